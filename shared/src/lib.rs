@@ -5,13 +5,6 @@
 //! | module | job |
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
-//! | [`table`] | code → name, explanation, source; (service, class) → read, write or unknown |
-//! | [`dissect`] | bytes → a tree of (byte range, name, text) |
-//! | [`config`] | what is stored: blocks with the manual's names |
-//! | [`plan`] | a configuration → a message that can be sent, or all findings |
-//! | [`engine`] | sans-IO machines: block, trigger, channel, session, client; time is passed in |
-//! | [`sim`] | sans-IO simulated device |
-//! | [`api`] | the REST and WebSocket types |
 #![no_std]
 #![forbid(unsafe_code)]
 extern crate alloc;

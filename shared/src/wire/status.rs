@@ -1,0 +1,28 @@
+//! General status of a message router reply. Explanations are in `table`.
+
+open_enum! {
+    /// General status of a CIP reply: 0 is success, everything else a refusal by the device.
+    /// Source: the general status table in `data/general_status.tsv`.
+    pub struct GeneralStatus(u8, width 4) {
+        /// The request was carried out.
+        Success = 0x00,
+        /// A connection-type service failed; the additional status says how.
+        ConnectionFailure = 0x01,
+        /// A path segment could not be parsed.
+        PathSegmentError = 0x04,
+        /// Class or instance is not in the device.
+        PathDestinationUnknown = 0x05,
+        /// The class or instance does not have the service.
+        ServiceNotSupported = 0x08,
+        /// The attribute is read only.
+        AttributeNotSettable = 0x0E,
+        /// The request carried too few bytes.
+        NotEnoughData = 0x13,
+        /// The attribute number is unknown.
+        AttributeNotSupported = 0x14,
+        /// The request carried too many bytes.
+        TooMuchData = 0x15,
+        /// The path size is not that of the path.
+        PathSizeInvalid = 0x26,
+    }
+}
