@@ -1,2 +1,68 @@
-//! Tasks.
-fn main() {}
+//! `cargo xtask`: builds, runs, tests and checks cipdeck; the one entry for people and for CI.
+
+mod frontend;
+mod page;
+mod process;
+mod report;
+mod toolchain;
+mod workspace;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+use crate::{frontend::Profile, report::Report, toolchain::Preference};
+
+fn main() -> ExitCode {
+    let mut report = Report::new();
+    match Cli::parse().command.execute(&mut report) {
+        Ok(()) => {
+            report.succeeded();
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            report.failed(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Builds, runs, tests and checks cipdeck.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    command: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Finds or installs a compiler for wasm32-unknown-unknown.
+    Toolchain(Preference),
+    /// Builds the page into frontend/dist.
+    Frontend {
+        /// Optimised for size, as it is shipped.
+        #[arg(long)]
+        release: bool,
+        #[command(flatten)]
+        toolchain: Preference,
+    },
+}
+
+impl Task {
+    fn execute(self, report: &mut Report) -> Result<()> {
+        match self {
+            Self::Toolchain(preference) => {
+                let wasm = toolchain::find(report, &preference)?;
+                report.say(&format!("wasm32 compiler: {wasm}"));
+            }
+            Self::Frontend { release, toolchain } => {
+                let wasm = toolchain::find(report, &toolchain)?;
+                let profile = if release { Profile::Shipped } else { Profile::Quick };
+                frontend::build(report, &wasm, profile)?;
+            }
+        }
+        Ok(())
+    }
+}

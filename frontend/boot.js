@@ -1,0 +1,12 @@
+// Starts the page. In a file of its own: the content security policy allows no script inside the document.
+import init from "./page.js";
+
+const note = document.getElementById("boot");
+try {
+  await init({ module_or_path: new URL("./page.wasm", import.meta.url) });
+  note.remove();
+} catch (error) {
+  note.setAttribute("role", "alert");
+  note.textContent = `cipdeck could not start: ${error}. A current browser with WebAssembly is needed; reload to try again.`;
+  throw error;
+}

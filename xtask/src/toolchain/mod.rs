@@ -1,0 +1,130 @@
+//! A compiler for wasm32-unknown-unknown: the installed one, rustup's, or one made of Debian's packages.
+
+mod debian;
+
+use std::{
+    fmt::{Display, Formatter},
+    io::{IsTerminal, Write},
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use anyhow::{Result, bail};
+use clap::Args;
+
+use crate::{
+    process::{cargo, find as find_program, program, read, run},
+    report::Report,
+    workspace,
+};
+
+/// The target of the page.
+pub(crate) const WASM: &str = "wasm32-unknown-unknown";
+
+/// What the caller wants of the search for a compiler.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Preference {
+    /// Install system packages without asking (also when the variable CI is set).
+    #[arg(long)]
+    pub(crate) yes: bool,
+    /// Use Debian's packages for wasm32 even when rustup has the target.
+    #[arg(long)]
+    pub(crate) debian: bool,
+}
+
+impl Preference {
+    /// Whether system packages may be installed: said so, in CI, or answered yes on a terminal.
+    pub(crate) fn may_install(&self, what: &str) -> Result<bool> {
+        if self.yes || std::env::var_os("CI").is_some_and(|value| !value.is_empty() && value != "false") {
+            return Ok(true);
+        }
+        if !std::io::stdin().is_terminal() {
+            return Ok(false);
+        }
+        print!("    Install {what} with apt-get? [y/N] ");
+        std::io::stdout().flush()?;
+        let mut answer = String::new();
+        std::io::stdin().read_line(&mut answer)?;
+        Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
+    }
+}
+
+/// A compiler that has the std library of wasm32.
+#[derive(Debug)]
+pub(crate) struct WasmToolchain {
+    /// The name for `RUSTUP_TOOLCHAIN`; the caller's own toolchain without one.
+    name: Option<String>,
+}
+
+impl WasmToolchain {
+    /// A cargo command that compiles for wasm32 into a target folder of its own.
+    pub(crate) fn cargo(&self) -> Command {
+        let mut command = cargo();
+        self.prepare(&mut command);
+        command
+    }
+
+    /// Makes a command, and every cargo that it starts, use this compiler and its target folder.
+    pub(crate) fn prepare(&self, command: &mut Command) {
+        command.env("CARGO_TARGET_DIR", self.target());
+        if let Some(name) = &self.name {
+            command.env("RUSTUP_TOOLCHAIN", name).env_remove("RUSTC").env_remove("CARGO");
+        }
+    }
+
+    /// Compilers do not share a target folder: each would build everything again after the other.
+    pub(crate) fn target(&self) -> PathBuf {
+        workspace::target().join(if self.name.is_some() { "wasm-debian" } else { "wasm" })
+    }
+}
+
+impl Display for WasmToolchain {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name.as_deref().unwrap_or("the default toolchain"))
+    }
+}
+
+/// Finds a compiler, or installs one: the present toolchain, then rustup, then Debian's packages.
+pub(crate) fn find(report: &mut Report, preference: &Preference) -> Result<WasmToolchain> {
+    if preference.debian {
+        return report.step("wasm32 from Debian's packages", || debian::toolchain(preference));
+    }
+    if has_target(&mut program("rustc")) {
+        return Ok(WasmToolchain { name: None });
+    }
+    if let Some(ready) = debian::linked() {
+        return Ok(ready);
+    }
+    let added = report.step("wasm32: rustup target add", || {
+        if find_program("rustup").is_none() {
+            println!("    rustup is not installed");
+            return Ok(false);
+        }
+        Ok(run(program("rustup").args(["target", "add", WASM])).is_ok() && has_target(&mut program("rustc")))
+    })?;
+    if added {
+        return Ok(WasmToolchain { name: None });
+    }
+    if debian::is_possible() {
+        return report.step("wasm32 from Debian's packages", || debian::toolchain(preference));
+    }
+    bail!("{THREE_WAYS}");
+}
+
+/// Whether this rustc has a std library for wasm32.
+fn has_target(rustc: &mut Command) -> bool {
+    read(rustc.args(["--print", "target-libdir", "--target", WASM]))
+        .is_ok_and(|folder| holds_core(Path::new(&folder)))
+}
+
+fn holds_core(folder: &Path) -> bool {
+    folder.read_dir().is_ok_and(|mut entries| {
+        entries
+            .any(|entry| entry.is_ok_and(|entry| entry.file_name().to_string_lossy().starts_with("libcore")))
+    })
+}
+
+const THREE_WAYS: &str = "the Rust compiler cannot build for wasm32-unknown-unknown, which the page needs. One of these helps:
+  1. rustup:  install rustup, then `rustup target add wasm32-unknown-unknown`
+  2. Debian:  as root, `cargo xtask toolchain --yes` (installs rustc-web and its std sources by apt-get)
+  3. your system's packages: a rustc whose `rustc --print target-libdir --target wasm32-unknown-unknown` names a folder that exists";
