@@ -5,8 +5,10 @@
 //! | module | job |
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
+//! | [`table`] | codes → names, explanations and sources; which services write |
 #![no_std]
 #![forbid(unsafe_code)]
 extern crate alloc;
 
+pub mod table;
 pub mod wire;
