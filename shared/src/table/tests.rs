@@ -1,4 +1,5 @@
 use super::*;
+use crate::wire::ClassCode;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
