@@ -6,9 +6,13 @@
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
 //! | [`table`] | codes → names, explanations and sources; which services write |
+//! | [`engine`] | machines that are given bytes and time |
+//! | [`sim`] | a simulated device |
 #![no_std]
 #![forbid(unsafe_code)]
 extern crate alloc;
 
+pub mod engine;
+pub mod sim;
 pub mod table;
 pub mod wire;

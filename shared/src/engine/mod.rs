@@ -1,0 +1,3 @@
+//! Machines that are given bytes and time.
+
+pub mod time;
