@@ -4,6 +4,7 @@ mod frontend;
 mod page;
 mod process;
 mod report;
+mod system;
 mod toolchain;
 mod workspace;
 
@@ -54,11 +55,11 @@ impl Task {
     fn execute(self, report: &mut Report) -> Result<()> {
         match self {
             Self::Toolchain(preference) => {
-                let wasm = toolchain::find(report, &preference)?;
+                let wasm = toolchain::find(report, preference)?;
                 report.say(&format!("wasm32 compiler: {wasm}"));
             }
             Self::Frontend { release, toolchain } => {
-                let wasm = toolchain::find(report, &toolchain)?;
+                let wasm = toolchain::find(report, toolchain)?;
                 let profile = if release { Profile::Shipped } else { Profile::Quick };
                 frontend::build(report, &wasm, profile)?;
             }

@@ -113,9 +113,9 @@ fn add(files: &mut Files, name: &str, content: Vec<u8>) -> String {
     let mut hasher = DefaultHasher::new();
     content.hash(&mut hasher);
     let (stem, extension) = name.split_once('.').unwrap_or((name, ""));
-    let hashed = format!("{stem}-{:016x}.{extension}", hasher.finish());
-    files.insert(hashed.clone(), content);
-    hashed
+    let name = format!("{stem}-{:016x}.{extension}", hasher.finish());
+    files.insert(name.clone(), content);
+    name
 }
 
 /// Replaces each quoted reference (`"/page.js"`) by the hashed name; a reference that is not there is an error.
@@ -140,7 +140,7 @@ fn styles(folder: &Path) -> Result<String> {
         }
         Err(_) => Vec::new(),
     };
-    sheets.retain(|name| name.ends_with(".css"));
+    sheets.retain(|name| Path::new(name).extension().is_some_and(|extension| extension == "css"));
     sheets.sort_by_key(|name| (name != "tokens.css", name != "base.css", name.clone()));
     let mut all = String::new();
     for sheet in sheets {

@@ -4,7 +4,6 @@ mod debian;
 
 use std::{
     fmt::{Display, Formatter},
-    io::{IsTerminal, Write},
     path::{Path, PathBuf},
     process::Command,
 };
@@ -15,6 +14,7 @@ use clap::Args;
 use crate::{
     process::{cargo, find as find_program, program, read, run},
     report::Report,
+    system::Consent,
     workspace,
 };
 
@@ -22,31 +22,13 @@ use crate::{
 pub(crate) const WASM: &str = "wasm32-unknown-unknown";
 
 /// What the caller wants of the search for a compiler.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Preference {
-    /// Install system packages without asking (also when the variable CI is set).
-    #[arg(long)]
-    pub(crate) yes: bool,
-    /// Use Debian's packages for wasm32 even when rustup has the target.
+    #[command(flatten)]
+    pub(crate) consent: Consent,
+    /// Use Debian's packages for wasm32 even where rustup has the target.
     #[arg(long)]
     pub(crate) debian: bool,
-}
-
-impl Preference {
-    /// Whether system packages may be installed: said so, in CI, or answered yes on a terminal.
-    pub(crate) fn may_install(&self, what: &str) -> Result<bool> {
-        if self.yes || std::env::var_os("CI").is_some_and(|value| !value.is_empty() && value != "false") {
-            return Ok(true);
-        }
-        if !std::io::stdin().is_terminal() {
-            return Ok(false);
-        }
-        print!("    Install {what} with apt-get? [y/N] ");
-        std::io::stdout().flush()?;
-        let mut answer = String::new();
-        std::io::stdin().read_line(&mut answer)?;
-        Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
-    }
 }
 
 /// A compiler that has the std library of wasm32.
@@ -85,7 +67,7 @@ impl Display for WasmToolchain {
 }
 
 /// Finds a compiler, or installs one: the present toolchain, then rustup, then Debian's packages.
-pub(crate) fn find(report: &mut Report, preference: &Preference) -> Result<WasmToolchain> {
+pub(crate) fn find(report: &mut Report, preference: Preference) -> Result<WasmToolchain> {
     if preference.debian {
         return report.step("wasm32 from Debian's packages", || debian::toolchain(preference));
     }
