@@ -6,13 +6,19 @@
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
 //! | [`table`] | codes → names, explanations and sources; which services write |
-//! | [`engine`] | machines that are given bytes and time |
 //! | [`sim`] | a simulated device |
+//! | [`config`] | what is stored: blocks with the manual's names |
+//! | [`plan`] | a configuration → a message that can be sent, or all findings |
+//! | [`engine`] | sans-IO machines: block, trigger, buffers, session, client; time is passed in |
+//! | [`api`] | the REST and WebSocket types |
 #![no_std]
 #![forbid(unsafe_code)]
 extern crate alloc;
 
+pub mod api;
+pub mod config;
 pub mod engine;
+pub mod plan;
 pub mod sim;
 pub mod table;
 pub mod wire;

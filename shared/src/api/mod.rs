@@ -1,0 +1,11 @@
+//! The types of REST and WebSocket. Described with examples in docs/REST.md and docs/WEBSOCKET.md.
+
+mod rest;
+mod status;
+mod ws;
+
+pub use self::rest::{
+    Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
+};
+pub use self::status::{BlockStatus, LastSuccess, MAX_EDGES};
+pub use self::ws::{ClientMessage, PROTOCOL_VERSION, ServerMessage};

@@ -1,0 +1,173 @@
+//! Bodies of REST requests and answers.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use super::status::BlockStatus;
+use crate::config::Block;
+use crate::plan::{self, Rule, Severity};
+
+/// `GET /api/v1/health`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Health {
+    /// `ok`.
+    pub status: String,
+    /// The relay's version.
+    pub version: String,
+    /// How many blocks are stored.
+    pub blocks: usize,
+}
+
+/// `POST /api/v1/blocks/{id}/in`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InRequest {
+    /// The new state of the input.
+    #[serde(rename = "IN")]
+    pub input: bool,
+    /// For a block that may write: the revision that a person has seen and confirmed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirm_write: Option<u64>,
+}
+
+/// `POST /api/v1/blocks/{id}/run`; an empty body is allowed for a read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunRequest {
+    /// For a block that may write: the revision that a person has seen and confirmed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirm_write: Option<u64>,
+}
+
+/// `POST /api/v1/check` and `cipdeck check --json`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Checked {
+    /// All findings.
+    pub findings: Vec<Finding>,
+    /// Message router bytes as hexadecimal text; absent with errors.
+    pub request: Option<String>,
+}
+
+/// One finding in JSON.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    /// `AppCfg.MemberId[1]`
+    pub field: String,
+    /// error, warning or note.
+    pub severity: Severity,
+    /// The stable name of the rule.
+    pub rule: String,
+    /// English.
+    pub message: String,
+    /// Smallest allowed number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<i64>,
+    /// Biggest allowed number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<i64>,
+    /// What the controller would give.
+    #[serde(rename = "ErrorID", default, skip_serializing_if = "Option::is_none")]
+    pub error_id: Option<u16>,
+    /// What the controller would give.
+    #[serde(rename = "SubErrorID", default, skip_serializing_if = "Option::is_none")]
+    pub sub_error_id: Option<u16>,
+}
+
+impl From<&plan::Finding> for Finding {
+    fn from(finding: &plan::Finding) -> Self {
+        let (min, max) = match finding.rule {
+            Rule::OutOfRange { min, max, .. } => (Some(min), Some(max)),
+            _ => (None, None),
+        };
+        let ids = finding.error_ids();
+        Self {
+            field: finding.field.to_string(),
+            severity: finding.severity,
+            rule: finding.rule.name().to_string(),
+            message: finding.rule.to_string(),
+            min,
+            max,
+            error_id: ids.map(|(error_id, _)| error_id),
+            sub_error_id: ids.and_then(|(_, sub_error_id)| sub_error_id),
+        }
+    }
+}
+
+/// Findings as JSON has them.
+pub fn findings(findings: &[plan::Finding]) -> Vec<Finding> {
+    findings.iter().map(Finding::from).collect()
+}
+
+/// One exchange of a block: what went out and what came back, as hexadecimal text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExchangeView {
+    /// When the message ended (RFC 3339).
+    pub at: String,
+    /// Message router request.
+    pub request: String,
+    /// Message router reply, if one came.
+    pub response: Option<String>,
+    /// Encapsulation frame that was written, if it was.
+    pub request_frame: Option<String>,
+    /// Encapsulation frame that was read, if one was.
+    pub response_frame: Option<String>,
+}
+
+/// `application/problem+json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Problem {
+    /// The code in words.
+    pub title: String,
+    /// HTTP status.
+    pub status: u16,
+    /// Stable name.
+    pub code: ProblemCode,
+    /// What is wrong and what to do.
+    pub detail: String,
+    /// With `findings`: all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub findings: Option<Vec<Finding>>,
+    /// With `stale_revision`: the block as it is now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub current: Option<Block>,
+}
+
+/// Stable names of problems.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ProblemCode {
+    /// 400
+    Unreadable,
+    /// 403
+    NotPermitted,
+    /// 404
+    NotFound,
+    /// 409
+    Busy,
+    /// 409
+    StaleRevision,
+    /// 413
+    TooLarge,
+    /// 422
+    Findings,
+    /// 500
+    Internal,
+    /// 503: the relay is stopping, or the block's run was ended by its deletion.
+    Unavailable,
+    /// A code that this version does not know.
+    #[serde(untagged)]
+    Other(String),
+}
+
+/// What a command over the WebSocket is answered with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Answer {
+    /// It was carried out; the status at its end.
+    Status(BlockStatus),
+    /// It was not carried out.
+    Problem(Problem),
+}

@@ -1,0 +1,103 @@
+//! The status of a block in JSON.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::{BlockId, write_hex};
+use crate::engine::{BlockView, Cause, CipStatus, Phase, StatusBits};
+
+/// Most edges in one message.
+pub const MAX_EDGES: usize = 16;
+
+/// Everything that a viewer sees of a running block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BlockStatus {
+    /// Which block.
+    pub block: BlockId,
+    /// The input.
+    #[serde(rename = "IN")]
+    pub input: bool,
+    /// The output: finished successfully.
+    #[serde(rename = "Q")]
+    pub q: bool,
+    /// The manual's status.
+    #[serde(rename = "Status")]
+    pub status: CipStatus,
+    /// Bytes in `ResData`.
+    #[serde(rename = "ResLength")]
+    pub res_length: u16,
+    /// Reply data as hexadecimal text.
+    #[serde(rename = "ResData")]
+    pub res_data: String,
+    /// How far the message is.
+    pub phase: Phase,
+    /// Place in the queue: 1 is next; 0 is not queued.
+    pub position: usize,
+    /// What happened, on an error.
+    pub cause: Option<Cause>,
+    /// How many times the block has ended with DN or ER since the relay started.
+    pub runs: u64,
+    /// µs from the last written byte to the decoded reply.
+    pub reply_us: Option<u64>,
+    /// µs from trigger to DN or ER.
+    pub elapsed_us: Option<u64>,
+    /// When the status last changed (RFC 3339).
+    pub at: Option<String>,
+    /// \[µs since the trigger, StatusBits\], since the last message to this viewer.
+    pub edges: Vec<(u64, StatusBits)>,
+    /// Edges that did not fit.
+    pub edges_dropped: u64,
+    /// The last success.
+    pub last: Option<LastSuccess>,
+}
+
+/// The last success of a block, kept while a new run clears `ResData`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LastSuccess {
+    /// Reply data as hexadecimal text.
+    #[serde(rename = "ResData")]
+    pub res_data: String,
+    /// Its length.
+    #[serde(rename = "ResLength")]
+    pub res_length: u16,
+    /// When (RFC 3339).
+    pub at: String,
+}
+
+impl BlockStatus {
+    /// From the engine's view. `at` and `last` belong to the caller, who has a wall clock.
+    pub fn new(block: BlockId, view: &BlockView, at: Option<String>, last: Option<LastSuccess>) -> Self {
+        Self {
+            block,
+            input: view.input,
+            q: view.q,
+            status: view.status,
+            // ResData is at most 490 bytes.
+            res_length: u16::try_from(view.res_data.len()).unwrap_or(u16::MAX),
+            res_data: write_hex(&view.res_data),
+            phase: view.phase,
+            position: view.position,
+            cause: view.cause.clone(),
+            runs: view.runs,
+            reply_us: view.reply_us,
+            elapsed_us: view.elapsed_us,
+            at,
+            edges: view.edges.clone(),
+            edges_dropped: view.edges_dropped,
+            last,
+        }
+    }
+
+    /// Takes over a newer status of the same block and keeps the edges of both, newest last.
+    pub fn merge(&mut self, newer: Self) {
+        let mut edges = core::mem::take(&mut self.edges);
+        let mut dropped = self.edges_dropped + newer.edges_dropped;
+        edges.extend_from_slice(&newer.edges);
+        let excess = edges.len().saturating_sub(MAX_EDGES);
+        edges.drain(..excess);
+        dropped += excess as u64;
+        *self = Self { edges, edges_dropped: dropped, ..newer };
+    }
+}

@@ -1,0 +1,20 @@
+//! What is stored: a block with the manual's names, and where it points.
+//!
+//! Numbers are wider than the manual's types, so that 300 or -1 arrives as a number and `plan` can say at which
+//! field it is wrong. Members that this version does not know are kept and reported.
+
+mod block;
+mod block_id;
+mod hex;
+mod msg_cip_generic;
+mod number;
+mod target_path;
+
+pub use self::block::{Block, Channel};
+pub use self::block_id::BlockId;
+pub use self::hex::{HexError, HexErrorKind, read_hex, write_hex};
+pub use self::msg_cip_generic::{
+    CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,
+};
+pub use self::number::{NumberError, read_number};
+pub use self::target_path::{Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};

@@ -1,0 +1,128 @@
+//! One block inside the engine: its machine, its trigger, and the message that is under way.
+
+use alloc::string::{String, ToString};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use crate::config::{Channel, Target};
+use crate::plan::{Finding, MessagePlan, Severity};
+
+use super::block::{BlockView, Input, MsgBlock};
+use super::event::Exchange;
+use super::failure::Failure;
+use super::status::StatusBits;
+use super::time::Instant;
+use super::trigger::Trigger;
+
+/// Edges that are kept of one message.
+const MAX_EDGES: usize = 16;
+
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub(super) revision: u64,
+    pub(super) plan: Result<Arc<MessagePlan>, Invalid>,
+    pub(super) block: MsgBlock,
+    pub(super) trigger: Trigger,
+    pub(super) active: Option<Active>,
+    /// IN is TRUE for one message only.
+    pub(super) run_once: bool,
+    /// When the engine has to look at this block again.
+    pub(super) wake: Option<Instant>,
+    edges: Vec<(u64, StatusBits)>,
+    edges_dropped: u64,
+}
+
+/// The message under way, with the configuration that it was triggered with.
+#[derive(Debug)]
+pub(super) struct Active {
+    pub(super) shot: u64,
+    pub(super) channel: Channel,
+    pub(super) target: Target,
+    pub(super) revision: u64,
+    pub(super) plan: Arc<MessagePlan>,
+    pub(super) granted: bool,
+}
+
+/// A stored configuration that has errors.
+#[derive(Clone, Debug)]
+pub(super) struct Invalid {
+    sub_error_id: u16,
+    detail: String,
+}
+
+impl Invalid {
+    pub(super) fn new(findings: &[Finding]) -> Self {
+        let error = findings.iter().find(|finding| finding.severity == Severity::Error);
+        let sub = error.and_then(Finding::error_ids).and_then(|(_, sub)| sub);
+        let detail = error.map(|finding| alloc::format!("{}: {}", finding.field, finding.rule));
+        Self { sub_error_id: sub.unwrap_or(0), detail: detail.unwrap_or_else(|| "no plan".to_string()) }
+    }
+
+    pub(super) fn failure(&self) -> Failure {
+        Failure::Invalid(self.sub_error_id, self.detail.clone())
+    }
+}
+
+impl Entry {
+    pub(super) fn new(revision: u64, plan: Result<Arc<MessagePlan>, Invalid>) -> Self {
+        Self {
+            revision,
+            plan,
+            block: MsgBlock::default(),
+            trigger: Trigger::default(),
+            active: None,
+            run_once: false,
+            wake: None,
+            edges: Vec::new(),
+            edges_dropped: 0,
+        }
+    }
+
+    /// Steps the block. Returns what the block asks for, and the new edges if anything is to be seen.
+    pub(super) fn step(&mut self, input: Input, now: Instant) -> Step {
+        let looks = |block: &MsgBlock| (block.status(), block.phase(), block.input());
+        let before = looks(&self.block);
+        let triggered = matches!(input, Input::Trigger { .. });
+        let effect = self.block.step(input, now);
+        if triggered && effect.is_some() {
+            self.edges.clear();
+            self.edges_dropped = 0;
+        }
+        let bits = self.block.status().status_bits;
+        let mut edges = Vec::new();
+        if bits != before.0.status_bits || (triggered && effect.is_some()) {
+            let edge = (now.micros_since(self.block.triggered_at()), bits);
+            edges.push(edge);
+            if self.edges.len() < MAX_EDGES {
+                self.edges.push(edge);
+            } else {
+                self.edges_dropped += 1;
+            }
+        }
+        let changed = looks(&self.block) != before || effect.is_some();
+        Step { effect, changed: changed.then_some(edges) }
+    }
+
+    /// The block with all edges of its last message.
+    pub(super) fn view(&self) -> BlockView {
+        BlockView { edges: self.edges.clone(), edges_dropped: self.edges_dropped, ..self.block.view() }
+    }
+
+    /// What an exchange begins with.
+    pub(super) fn exchange(&self) -> Exchange {
+        let request = self.active.as_ref().map(|active| active.plan.request().bytes());
+        Exchange { request: request.unwrap_or_default(), ..Exchange::default() }
+    }
+
+    /// When the engine has to look at this block: its timeout, or its next trigger.
+    pub(super) fn due(&self) -> Option<Instant> {
+        self.block.deadline().into_iter().chain(self.trigger.next()).min()
+    }
+}
+
+/// What a step led to.
+pub(super) struct Step {
+    pub(super) effect: Option<super::block::Effect>,
+    /// The new edges, when the block looks different.
+    pub(super) changed: Option<Vec<(u64, StatusBits)>>,
+}

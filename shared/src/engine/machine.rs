@@ -1,0 +1,497 @@
+//! All blocks, the buffers of the channels, and one client per target.
+
+use alloc::boxed::Box;
+use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use crate::config::{BlockId, Channel, Target};
+use crate::plan::{Finding, MessagePlan};
+
+use super::block::{BlockView, Effect, Input};
+use super::channel::{Buffers, CONTROLLER_SESSIONS};
+use super::client::{Client, Context, Job, Output};
+use super::entry::{Active, Entry, Invalid};
+use super::event::{Event, Exchange, LinkId, Wants};
+use super::failure::{ConnectError, Failure};
+use super::time::{Instant, Millis};
+
+/// Changes of the place in the queue are told to this many waiting blocks.
+const ANNOUNCED_POSITIONS: usize = 16;
+
+/// How long a block without a usable plan is busy: it fails at once.
+const NO_TIME: Millis = Millis(0);
+
+/// Owner of everything that runs. See the module's text for the order of calls.
+#[derive(Debug)]
+pub struct Engine {
+    blocks: BTreeMap<BlockId, Entry>,
+    exchanges: BTreeMap<BlockId, Exchange>,
+    controller: Buffers,
+    monitor: Buffers,
+    clients: BTreeMap<Target, Client>,
+    links: BTreeMap<LinkId, Target>,
+    timers: BTreeSet<(Instant, BlockId)>,
+    events: VecDeque<Event>,
+    next_link: u64,
+    next_shot: u64,
+}
+
+/// Why a command was not carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CommandError {
+    /// There is no such block.
+    #[error("there is no such block")]
+    UnknownBlock,
+    /// The block is busy, or its IN is TRUE.
+    #[error("the block is busy or its IN is TRUE")]
+    Busy,
+}
+
+impl Default for Engine {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Engine {
+    /// Without blocks.
+    pub const fn new() -> Self {
+        Self {
+            blocks: BTreeMap::new(),
+            exchanges: BTreeMap::new(),
+            controller: Buffers::controller(),
+            monitor: Buffers::monitor(),
+            clients: BTreeMap::new(),
+            links: BTreeMap::new(),
+            timers: BTreeSet::new(),
+            events: VecDeque::new(),
+            next_link: 0,
+            next_shot: 0,
+        }
+    }
+
+    /// Adds a block or changes its configuration, which acts at the next trigger. A block whose stored
+    /// configuration has errors fails with `ErrorID` 33 when it is triggered.
+    pub fn put(
+        &mut self,
+        block: BlockId,
+        revision: u64,
+        plan: Result<MessagePlan, Vec<Finding>>,
+        now: Instant,
+    ) {
+        let plan = plan.map(Arc::new).map_err(|findings| Invalid::new(&findings));
+        let trigger = plan.as_ref().ok().map(|plan| plan.trigger());
+        match self.blocks.get_mut(&block) {
+            Some(entry) => {
+                entry.revision = revision;
+                entry.plan = plan;
+                if let Some(kind) = trigger {
+                    entry.trigger.change(kind, entry.block.phase().is_busy(), now);
+                }
+            }
+            None => {
+                self.blocks.insert(block, Entry::new(revision, plan));
+            }
+        }
+        self.rearm(block);
+        self.retire(now);
+    }
+
+    /// Cancels a block and forgets it.
+    pub fn remove(&mut self, block: BlockId, now: Instant) {
+        self.step(block, Input::Cancel, now);
+        if let Some(entry) = self.blocks.remove(&block) {
+            entry.wake.map(|wake| self.timers.remove(&(wake, block)));
+        }
+        self.exchanges.remove(&block);
+        self.retire(now);
+    }
+
+    /// One message, whatever `TriggerType`: IN rises now and falls at the end. Returns the shot.
+    pub fn run(&mut self, block: BlockId, now: Instant) -> Result<u64, CommandError> {
+        let entry = self.blocks.get_mut(&block).ok_or(CommandError::UnknownBlock)?;
+        if entry.block.phase().is_busy() || entry.block.input() {
+            return Err(CommandError::Busy);
+        }
+        entry.run_once = true;
+        let shot = self.next_shot + 1;
+        self.step(block, Input::Rise, now);
+        self.trigger(block, now);
+        Ok(shot)
+    }
+
+    /// Sets IN.
+    pub fn set_in(&mut self, block: BlockId, input: bool, now: Instant) -> Result<(), CommandError> {
+        let entry = self.blocks.get_mut(&block).ok_or(CommandError::UnknownBlock)?;
+        let was = entry.block.input();
+        let kind = entry.plan.as_ref().map(|plan| plan.trigger()).ok();
+        // A run's IN is TRUE already: setting it keeps it TRUE. That is no rising edge.
+        entry.run_once = false;
+        match (input, kind) {
+            (true, Some(kind)) if !was || entry.trigger.next().is_none() => entry.trigger.start(kind, now),
+            (true, _) => {}
+            (false, _) => entry.trigger.stop(),
+        }
+        match (was, input) {
+            (false, true) => {
+                self.step(block, Input::Rise, now);
+                self.trigger(block, now);
+            }
+            (true, false) => self.step(block, Input::Fall, now),
+            _ => {}
+        }
+        self.rearm(block);
+        Ok(())
+    }
+
+    /// `CtrlCfg.Cancel`: ends a busy message with ER. Nothing when idle.
+    pub fn cancel(&mut self, block: BlockId, now: Instant) -> Result<(), CommandError> {
+        if !self.blocks.contains_key(&block) {
+            return Err(CommandError::UnknownBlock);
+        }
+        self.step(block, Input::Cancel, now);
+        Ok(())
+    }
+
+    /// Ends everything: all INs fall, all messages are cancelled, all sessions are closed.
+    pub fn stop(&mut self, now: Instant) {
+        let blocks: Vec<_> = self.blocks.keys().copied().collect();
+        for block in blocks {
+            // The block exists: both calls can only succeed.
+            let _ = self.set_in(block, false, now);
+            let _ = self.cancel(block, now);
+        }
+        let targets: Vec<_> = self.clients.keys().cloned().collect();
+        for target in targets {
+            self.client(&target, now, Client::close);
+        }
+    }
+
+    /// The TCP connection is there.
+    pub fn connected(&mut self, link: LinkId, now: Instant) {
+        self.link(link, now, Client::connected);
+    }
+
+    /// There is no TCP connection; `detail` is what the operating system said.
+    pub fn connect_failed(&mut self, link: LinkId, error: ConnectError, detail: &str, now: Instant) {
+        self.link(link, now, |client, cx| client.connect_failed(error, detail, cx));
+        self.links.remove(&link);
+    }
+
+    /// The target closed the TCP connection, or it broke.
+    pub fn closed(&mut self, link: LinkId, now: Instant) {
+        self.link(link, now, Client::closed);
+        self.links.remove(&link);
+    }
+
+    /// Bytes from the socket.
+    pub fn handle_input(&mut self, link: LinkId, bytes: &[u8], now: Instant) {
+        self.link(link, now, |client, cx| client.handle_input(bytes, cx));
+    }
+
+    /// Appends bytes for the socket, if there are any. ST rises here: the caller writes them at once.
+    pub fn poll_transmit(&mut self, link: LinkId, out: &mut Vec<u8>, now: Instant) -> bool {
+        self.link(link, now, |client, cx| client.poll_transmit(out, cx)).unwrap_or(false)
+    }
+
+    /// The answer to [`Event::Wants`].
+    pub fn permit(&mut self, wants: &Wants, allowed: bool, now: Instant) {
+        self.link(wants.link, now, |client, cx| client.permit(wants, allowed, cx));
+    }
+
+    /// When to call [`Self::handle_timeout`].
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        let block = self.timers.first().map(|(at, _)| *at);
+        let closing = self.clients.values().filter_map(Client::poll_timeout).min();
+        block.into_iter().chain(closing).min()
+    }
+
+    /// Time has passed. Too early is harmless.
+    pub fn handle_timeout(&mut self, now: Instant) {
+        while let Some((_, block)) = self.timers.first().copied().filter(|(at, _)| *at <= now) {
+            self.step(block, Input::Tick, now);
+            self.cycle(block, now);
+            self.rearm(block);
+        }
+        let closing: Vec<_> =
+            self.clients.iter().filter(|(_, client)| client.poll_timeout().is_some()).collect();
+        let closing: Vec<_> = closing.into_iter().map(|(target, _)| target.clone()).collect();
+        for target in closing {
+            self.client(&target, now, Client::handle_timeout);
+        }
+    }
+
+    /// What is to be done or told, in order.
+    pub fn poll_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// How a block looks, with all edges of its last message.
+    pub fn view(&self, block: BlockId) -> Option<BlockView> {
+        let entry = self.blocks.get(&block)?;
+        Some(BlockView { position: self.position(block, entry), ..entry.view() })
+    }
+
+    /// Whether a message of this block is under way.
+    pub fn is_busy(&self, block: BlockId) -> bool {
+        self.blocks.get(&block).is_some_and(|entry| entry.block.phase().is_busy())
+    }
+
+    /// Whether no connection is there or being made: everything has been closed.
+    pub fn is_quiet(&self) -> bool {
+        self.clients.values().all(|client| client.link_id().is_none())
+    }
+
+    /// Frames from a target that answered nothing: late, or not meant for us.
+    pub fn dropped_frames(&self, target: &Target) -> u64 {
+        self.clients.get(target).map_or(0, Client::dropped)
+    }
+
+    fn trigger(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let timeout = entry.plan.as_ref().map_or(NO_TIME, |plan| Millis::from(plan.ucmm_timeout_ms()));
+        self.step(block, Input::Trigger { deadline: now + timeout }, now);
+    }
+
+    /// A period has elapsed while IN is TRUE.
+    fn cycle(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let target = entry.plan.as_ref().ok().map(|plan| plan.target());
+        if let Some(until) =
+            target.and_then(|target| self.clients.get(target)).and_then(|client| client.retry_at(now))
+        {
+            entry.trigger.hold_back(until);
+        }
+        if entry.trigger.take(now) {
+            self.trigger(block, now);
+        }
+    }
+
+    /// One step of one block, and everything that follows from it.
+    fn step(&mut self, block: BlockId, input: Input, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let step = entry.step(input, now);
+        if let Some(edges) = step.changed {
+            let view = entry.block.view();
+            let position = self.blocks.get(&block).map_or(0, |entry| self.position(block, entry));
+            let view = Box::new(BlockView { position, edges, ..view });
+            self.events.push_back(Event::Changed { block, view });
+        }
+        match step.effect {
+            Some(Effect::Enqueue) => self.enqueue(block, now),
+            Some(Effect::Release) => self.release(block, now),
+            None => {}
+        }
+        self.rearm(block);
+    }
+
+    fn enqueue(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        self.next_shot += 1;
+        let plan = match &entry.plan {
+            Ok(plan) => Arc::clone(plan),
+            Err(invalid) => {
+                let failure = invalid.failure();
+                return self.step(block, Input::Failed(failure), now);
+            }
+        };
+        let channel = plan.channel();
+        entry.active = Some(Active {
+            shot: self.next_shot,
+            channel,
+            target: plan.target().clone(),
+            revision: entry.revision,
+            plan,
+            granted: false,
+        });
+        self.exchanges.insert(block, entry.exchange());
+        self.buffers(channel).enqueue(block);
+        self.grant(channel, now);
+    }
+
+    /// A message has ended: its buffer is free, its client forgets it, and its owner hears of it.
+    fn release(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        entry.trigger.ended(now);
+        let view = Box::new(entry.view());
+        let run_once = core::mem::take(&mut entry.run_once);
+        let active = entry.active.take();
+        let shot = active.as_ref().map_or(self.next_shot, |active| active.shot);
+        let exchange = Box::new(self.exchanges.remove(&block).unwrap_or_default());
+        self.events.push_back(Event::Finished { block, shot, view, exchange });
+        if run_once {
+            self.step(block, Input::Fall, now);
+        }
+        if let Some(active) = active {
+            self.buffers(active.channel).release(block);
+            self.client(&active.target, now, |client, cx| client.withdraw(block, cx));
+            self.grant(active.channel, now);
+        }
+    }
+
+    fn grant(&mut self, channel: Channel, now: Instant) {
+        let mut granted = false;
+        while let Some(block) = self.buffers(channel).poll_grant() {
+            granted = true;
+            self.step(block, Input::BufferGranted, now);
+            self.submit(block, now);
+        }
+        if granted {
+            self.announce_positions(channel);
+        }
+    }
+
+    fn submit(&mut self, block: BlockId, now: Instant) {
+        let Some(active) = self.blocks.get_mut(&block).and_then(|entry| entry.active.as_mut()) else {
+            return;
+        };
+        active.granted = true;
+        let (target, channel) = (active.target.clone(), active.channel);
+        let job = Job {
+            block,
+            shot: active.shot,
+            revision: active.revision,
+            plan: Arc::clone(&active.plan),
+            resent: false,
+        };
+        if channel == Channel::Controller && !self.session_for_controller(&target, now) {
+            return self.step(block, Input::Failed(Failure::Limit), now);
+        }
+        self.clients.entry(target.clone()).or_default();
+        self.client(&target, now, |client, cx| {
+            client.controller |= channel == Channel::Controller;
+            client.submit(job, cx);
+        });
+    }
+
+    /// Whether the controller may have a session with this target; an idle one is given up if need be.
+    fn session_for_controller(&mut self, target: &Target, now: Instant) -> bool {
+        let counts = |client: &Client| client.controller && client.holds_session();
+        if self.clients.get(target).is_some_and(counts) {
+            return true;
+        }
+        if self.clients.values().filter(|client| counts(client)).count() < CONTROLLER_SESSIONS {
+            return true;
+        }
+        let idle = self.clients.iter().filter(|(_, client)| counts(client) && client.is_idle());
+        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
+        oldest.is_some_and(|target| {
+            self.client(&target, now, Client::close);
+            true
+        })
+    }
+
+    /// Closes the sessions that no block needs any more.
+    fn retire(&mut self, now: Instant) {
+        let needed = |target: &Target| {
+            self.blocks.values().any(|entry| {
+                let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
+                planned == Some(target)
+                    || entry.active.as_ref().is_some_and(|active| active.target == *target)
+            })
+        };
+        let unused: Vec<_> = self.clients.keys().filter(|target| !needed(target)).cloned().collect();
+        for target in unused {
+            self.client(&target, now, Client::close);
+        }
+    }
+
+    fn announce_positions(&mut self, channel: Channel) {
+        let waiting: Vec<_> = self.buffers(channel).waiting().take(ANNOUNCED_POSITIONS).collect();
+        for block in waiting {
+            if let Some(entry) = self.blocks.get(&block) {
+                let view =
+                    Box::new(BlockView { position: self.position(block, entry), ..entry.block.view() });
+                self.events.push_back(Event::Changed { block, view });
+            }
+        }
+    }
+
+    fn position(&self, block: BlockId, entry: &Entry) -> usize {
+        match &entry.active {
+            Some(active) if active.granted => {
+                self.clients.get(&active.target).map_or(0, |client| client.position(block))
+            }
+            Some(Active { channel: Channel::Controller, .. }) => self.controller.position(block),
+            Some(Active { channel: Channel::Monitor, .. }) => self.monitor.position(block),
+            None => 0,
+        }
+    }
+
+    const fn buffers(&mut self, channel: Channel) -> &mut Buffers {
+        match channel {
+            Channel::Controller => &mut self.controller,
+            Channel::Monitor => &mut self.monitor,
+        }
+    }
+
+    fn rearm(&mut self, block: BlockId) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let due = entry.due();
+        if due != entry.wake {
+            entry.wake.map(|old| self.timers.remove(&(old, block)));
+            due.map(|at| self.timers.insert((at, block)));
+            entry.wake = due;
+        }
+    }
+
+    fn link<T>(
+        &mut self,
+        link: LinkId,
+        now: Instant,
+        call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
+    ) -> Option<T> {
+        let target = self.links.get(&link)?.clone();
+        if self.clients.get(&target).and_then(Client::link_id) != Some(link) {
+            return None;
+        }
+        self.client(&target, now, call)
+    }
+
+    /// Calls a client and carries out what it wants.
+    fn client<T>(
+        &mut self,
+        target: &Target,
+        now: Instant,
+        call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
+    ) -> Option<T> {
+        let mut out = VecDeque::new();
+        let client = self.clients.get_mut(target)?;
+        let result = call(client, &mut Context { now, next_link: &mut self.next_link, out: &mut out });
+        for output in out {
+            self.output(target, output, now);
+        }
+        Some(result)
+    }
+
+    fn output(&mut self, target: &Target, output: Output, now: Instant) {
+        match output {
+            Output::Connect(link) => {
+                self.links.insert(link, target.clone());
+                self.events.push_back(Event::Connect { link, target: target.clone() });
+            }
+            Output::Disconnect(link) => {
+                self.links.remove(&link);
+                self.events.push_back(Event::Disconnect { link });
+            }
+            Output::Transmit(link) => self.events.push_back(Event::Transmit { link }),
+            Output::Wants(wants) => self.events.push_back(Event::Wants(wants)),
+            Output::Block(block, input) => self.step(block, input, now),
+            Output::Wrote(block, frame) => {
+                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                    exchange.request_frame = Some(frame);
+                }
+            }
+            Output::Read(block, frame, response) => {
+                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                    exchange.response_frame = Some(frame);
+                    exchange.response = response;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

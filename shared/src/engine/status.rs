@@ -1,0 +1,170 @@
+//! What a block shows: StatusBits, CIPSTATUS, the phase, and the cause behind the manual's numbers.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+/// `Status.StatusBits`. 2080-RM001D p. 179; bits 5 and 6 from document 13032001.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct StatusBits(pub u16);
+
+impl StatusBits {
+    /// Enabled: IN is TRUE, or the message has not ended yet.
+    pub const EN: u16 = 1;
+    /// Enabled and waiting to send: a communication buffer has been allocated.
+    pub const EW: u16 = 1 << 1;
+    /// Started: the message has been written, the reply is awaited.
+    pub const ST: u16 = 1 << 2;
+    /// Error.
+    pub const ER: u16 = 1 << 3;
+    /// Done.
+    pub const DN: u16 = 1 << 4;
+    /// Completing this message closed the CIP connection.
+    pub const CIPCONN: u16 = 1 << 5;
+    /// Completing this message closed the EtherNet/IP session.
+    pub const EIPSESS: u16 = 1 << 6;
+
+    /// Bits and their names, in the manual's order.
+    pub const NAMES: [(u16, &'static str); 7] = [
+        (Self::EN, "EN"),
+        (Self::EW, "EW"),
+        (Self::ST, "ST"),
+        (Self::ER, "ER"),
+        (Self::DN, "DN"),
+        (Self::CIPCONN, "CIPCONN"),
+        (Self::EIPSESS, "EIPSESS"),
+    ];
+
+    /// Whether a bit is set.
+    pub const fn has(self, bit: u16) -> bool {
+        self.0 & bit != 0
+    }
+}
+
+/// CIPSTATUS. 2080-RM001D p. 191.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CipStatus {
+    /// TRUE when the block has met an error.
+    #[serde(rename = "Error")]
+    pub error: bool,
+    /// Error code; `table::block_error` explains it.
+    #[serde(rename = "ErrorID")]
+    pub error_id: u16,
+    /// For `ErrorID` 224 the CIP general status.
+    #[serde(rename = "SubErrorID")]
+    pub sub_error_id: u16,
+    /// For `ErrorID` 224 the first word of the additional status.
+    #[serde(rename = "ExtErrorID")]
+    pub ext_error_id: u16,
+    /// EN, EW, ST, ER, DN …
+    #[serde(rename = "StatusBits")]
+    pub status_bits: StatusBits,
+}
+
+/// How far a message is, finer than the bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Phase {
+    /// Never triggered, or reset.
+    #[default]
+    Idle,
+    /// In the wait queue: no buffer is free (EN).
+    Waiting,
+    /// Holds a buffer and waits for its target (EN, EW).
+    Buffered,
+    /// Holds a buffer while the TCP connection and the session are made (EN, EW).
+    Connecting,
+    /// Written; the reply is awaited (EN, ST).
+    Sent,
+    /// Success (DN).
+    Done,
+    /// Error (ER).
+    Failed,
+}
+
+impl Phase {
+    /// Between trigger and end.
+    pub const fn is_busy(self) -> bool {
+        matches!(self, Self::Waiting | Self::Buffered | Self::Connecting | Self::Sent)
+    }
+}
+
+/// What happened, beside the manual's numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cause {
+    /// What happened.
+    pub what: CauseKind,
+    /// The request had been written when it ended without an answer: the device may have carried it out.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub may_have_acted: bool,
+    /// The device has answered with success, so it has acted, although the block failed.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub has_acted: bool,
+    /// The encapsulation status, for `session_refused` and `encapsulation_status`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub status: Option<u32>,
+    /// The byte at which a reply stopped to make sense, for `malformed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub byte: Option<usize>,
+    /// All words of the additional status, for `refused_by_device`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub additional: Vec<u16>,
+    /// More, in English: what the operating system or the decoder said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detail: Option<String>,
+}
+
+impl Cause {
+    /// A cause without particulars.
+    pub const fn new(what: CauseKind) -> Self {
+        Self {
+            what,
+            may_have_acted: false,
+            has_acted: false,
+            status: None,
+            byte: None,
+            additional: Vec::new(),
+            detail: None,
+        }
+    }
+}
+
+/// What happened. New kinds may appear: a reader keeps the word of one it does not know.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum CauseKind {
+    /// The device answered with a CIP error.
+    RefusedByDevice,
+    /// Time ran out.
+    Timeout,
+    /// Nobody listens at the TCP port.
+    Refused,
+    /// The address cannot be reached.
+    Unreachable,
+    /// The name is unknown.
+    Unresolved,
+    /// RegisterSession was refused.
+    SessionRefused,
+    /// The target answered with an encapsulation status.
+    EncapsulationStatus,
+    /// The answer made no sense.
+    Malformed,
+    /// The target closed the TCP connection.
+    Closed,
+    /// Too many sessions or connections.
+    Limit,
+    /// The reply is longer than `ResDataSize`.
+    TooSmall,
+    /// The configuration has errors.
+    Invalid,
+    /// Cancelled by the user.
+    Cancelled,
+    /// The relay did not permit the write.
+    NotPermitted,
+    /// A kind that this version does not know.
+    #[serde(untagged)]
+    Other(String),
+}

@@ -1,0 +1,228 @@
+//! The rules, member by member. Every rule adds its finding and goes on.
+
+use alloc::string::ToString;
+use alloc::vec::Vec;
+
+use crate::config::{
+    CipAppCfg, CipControlCfg, CipTargetCfg, Extra, Host, MSG_CIPGENERIC, MsgCipGeneric, Target, TargetPath,
+    read_hex,
+};
+use crate::table::Access;
+use crate::wire::{Epath, MessageRouterRequest, ServiceCode};
+
+use super::finding::{Feature, Field, Finding, Rule, Severity};
+use super::limits::{
+    CONN_MSG_TIMEOUT, MAX_NAME, MAX_REQUEST_DATA, MAX_RESPONSE_DATA, TimeoutRange, UCMM_TIMEOUT,
+    USUAL_MESSAGE,
+};
+use super::{App, TriggerType};
+
+#[derive(Default)]
+pub(super) struct Checks {
+    pub(super) findings: Vec<Finding>,
+}
+
+impl Checks {
+    pub(super) fn block(&mut self, config: &MsgCipGeneric) {
+        if config.name.trim().is_empty() {
+            self.error(Field::Name, Rule::Missing);
+        }
+        if config.name.chars().count() > MAX_NAME {
+            self.error(Field::Name, Rule::TextTooLong { max: MAX_NAME });
+        }
+        if config.kind != MSG_CIPGENERIC {
+            self.error(Field::Kind, Rule::UnknownKind);
+        }
+        self.unknown("", &config.extra);
+    }
+
+    pub(super) fn ctrl_cfg(&mut self, cfg: &CipControlCfg) -> Option<TriggerType> {
+        if cfg.cancel {
+            self.warning(Field::Cancel, Rule::CancelIsAnInput);
+        }
+        if cfg.str_mode != 0 {
+            self.number::<u8>(Field::StrMode, cfg.str_mode, 0, 255);
+            self.note(Field::StrMode, Rule::Reserved);
+        }
+        self.unknown("CtrlCfg.", &cfg.extra);
+        let period = self.number::<u16>(Field::TriggerType, cfg.trigger_type, 0, 65_535)?;
+        if period > 255 {
+            self.note(Field::TriggerType, Rule::OverUsint);
+        }
+        Some(match period {
+            0 => TriggerType::Once,
+            1 => TriggerType::Fast,
+            period => TriggerType::Every(period),
+        })
+    }
+
+    pub(super) fn app_cfg(&mut self, cfg: &CipAppCfg) -> Option<App> {
+        let service = self.number::<u8>(Field::Service, cfg.service, 1, 127);
+        let class = self.number::<u16>(Field::Class, cfg.class, 1, 65_535);
+        let instance = self.number::<u32>(Field::Instance, cfg.instance, 0, u32::MAX.into());
+        let attribute = self.number::<u16>(Field::Attribute, cfg.attribute, 0, 65_535);
+        let members = self.members(cfg);
+        self.unknown("AppCfg.", &cfg.extra);
+        Some(App {
+            service: ServiceCode(service?),
+            class: class?,
+            instance: instance?,
+            attribute: attribute?,
+            members: members?,
+        })
+    }
+
+    fn members(&mut self, cfg: &CipAppCfg) -> Option<Vec<u16>> {
+        let ids: Vec<Option<u16>> = cfg
+            .member_id
+            .iter()
+            .take(3)
+            .enumerate()
+            .map(|(index, id)| self.number(Field::MemberId(index), *id, 0, 65_535))
+            .collect();
+        if cfg.member_id.len() != 3 {
+            self.error(Field::MemberIds, Rule::MemberIdCount { found: cfg.member_id.len() });
+            return None;
+        }
+        let count = self.number::<u8>(Field::MemberCnt, cfg.member_cnt, 0, 3)?;
+        ids.into_iter().collect::<Option<Vec<u16>>>().map(|mut ids| {
+            ids.truncate(count.into());
+            ids
+        })
+    }
+
+    pub(super) fn target_cfg(&mut self, cfg: &CipTargetCfg) -> Option<(Target, u32)> {
+        let target = self.path(&cfg.path);
+        if self.number::<u8>(Field::CipConnMode, cfg.cip_conn_mode, 0, 1) == Some(1) {
+            self.error(Field::CipConnMode, Rule::NotAvailable(Feature::Class3));
+        } else if cfg.conn_close {
+            self.note(Field::ConnClose, Rule::ConnCloseUnconnected);
+        }
+        let ucmm = self.timeout(Field::UcmmTimeout, cfg.ucmm_timeout, UCMM_TIMEOUT);
+        self.timeout(Field::ConnMsgTimeout, cfg.conn_msg_timeout, CONN_MSG_TIMEOUT);
+        self.unknown("TargetCfg.", &cfg.extra);
+        target.zip(ucmm)
+    }
+
+    fn path(&mut self, text: &str) -> Option<Target> {
+        let path: TargetPath = match text.parse() {
+            Ok(path) => path,
+            Err(error) => {
+                self.error(Field::Path, Rule::Path(error));
+                return None;
+            }
+        };
+        if let Target::Network(endpoint) = &path.target {
+            if endpoint.has_unusual_port() {
+                self.warning(Field::Path, Rule::TcpPort { port: endpoint.port });
+            }
+            if matches!(endpoint.host, Host::Name(_)) {
+                self.warning(Field::Path, Rule::HostName);
+            }
+        }
+        if path.route.is_some() {
+            self.error(Field::Path, Rule::NotAvailable(Feature::Route));
+            return None;
+        }
+        Some(path.target)
+    }
+
+    fn timeout(&mut self, field: Field, value: i64, range: TimeoutRange) -> Option<u32> {
+        // A negative number cannot be meant: a UDINT cannot hold it.
+        let given = self.number::<u32>(field.clone(), value, 0, u32::MAX.into())?;
+        if given == 0 {
+            return Some(range.default);
+        }
+        let used = given.clamp(range.min, range.max);
+        if used != given {
+            self.note(field, Rule::Clamped { value, used });
+        }
+        Some(used)
+    }
+
+    pub(super) fn request_data(&mut self, config: &MsgCipGeneric) -> Option<Vec<u8>> {
+        let data = match read_hex(&config.req_data) {
+            Ok(data) => Some(data),
+            Err(error) => {
+                self.error(Field::ReqData, Rule::Hex { position: error.position, kind: error.kind });
+                None
+            }
+        };
+        let length = match config.req_length {
+            Some(length) => Some(self.number::<u16>(Field::ReqLength, length, 0, 490)?),
+            None => None,
+        };
+        let mut data = data?;
+        if data.len() > MAX_REQUEST_DATA {
+            self.error(Field::ReqData, Rule::TooMuchData { length: data.len(), max: MAX_REQUEST_DATA });
+            return None;
+        }
+        let Some(sent) = length.map(usize::from) else { return Some(data) };
+        if sent > data.len() {
+            self.error(Field::ReqLength, Rule::LengthOverData { length: data.len() });
+            return None;
+        }
+        if sent < data.len() {
+            self.note(Field::ReqLength, Rule::LengthUnderData { sent, length: data.len() });
+            data.truncate(sent);
+        }
+        Some(data)
+    }
+
+    pub(super) fn res_data_size(&mut self, config: &MsgCipGeneric) -> Option<u16> {
+        self.number(Field::ResDataSize, config.res_data_size, 1, MAX_RESPONSE_DATA)
+    }
+
+    pub(super) fn resume(&mut self, config: &MsgCipGeneric, access: Option<Access>) {
+        if config.resume && access.is_some_and(|access| access != Access::Read) {
+            self.error(Field::Resume, Rule::ResumeNeedsRead);
+        }
+    }
+
+    pub(super) fn request(
+        &mut self,
+        service: ServiceCode,
+        path: Epath,
+        data: Vec<u8>,
+    ) -> Option<MessageRouterRequest> {
+        match MessageRouterRequest::new(service, path, data) {
+            Ok(request) => {
+                let length = request.bytes().len();
+                if length > USUAL_MESSAGE {
+                    self.warning(Field::ReqData, Rule::LongMessage { length, max: USUAL_MESSAGE });
+                }
+                Some(request)
+            }
+            Err(error) => {
+                self.error(Field::ReqData, Rule::TooMuchData { length: error.length, max: error.max });
+                None
+            }
+        }
+    }
+
+    fn number<T: TryFrom<i64>>(&mut self, field: Field, value: i64, min: i64, max: i64) -> Option<T> {
+        let number = (min..=max).contains(&value).then_some(value).and_then(|value| T::try_from(value).ok());
+        if number.is_none() {
+            self.error(field, Rule::OutOfRange { value, min, max });
+        }
+        number
+    }
+
+    fn unknown(&mut self, prefix: &str, extra: &Extra) {
+        for name in extra.keys() {
+            self.warning(Field::Unknown(prefix.to_string() + name), Rule::UnknownMember);
+        }
+    }
+
+    fn error(&mut self, field: Field, rule: Rule) {
+        self.findings.push(Finding { field, severity: Severity::Error, rule });
+    }
+
+    fn warning(&mut self, field: Field, rule: Rule) {
+        self.findings.push(Finding { field, severity: Severity::Warning, rule });
+    }
+
+    fn note(&mut self, field: Field, rule: Rule) {
+        self.findings.push(Finding { field, severity: Severity::Note, rule });
+    }
+}

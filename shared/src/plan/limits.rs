@@ -1,0 +1,30 @@
+//! Limits of the block, each with its source.
+
+/// Upper bound of request data. 2080-RM001D p. 196 (confirmed for CIP serial; headers may leave less).
+pub const MAX_REQUEST_DATA: usize = 490;
+
+/// Size limits of `ResData`: as the request's.
+pub const MAX_RESPONSE_DATA: i64 = 490;
+
+/// Usual limit of a whole unconnected message: service, path size, path and data. Panasonic FP7 EIPMBODY table.
+pub const USUAL_MESSAGE: usize = 504;
+
+/// Characters of a block's name. Our own limit.
+pub const MAX_NAME: usize = 64;
+
+/// A timeout of the manual: 0 is the default, everything else is moved into the range.
+#[derive(Clone, Copy, Debug)]
+pub struct TimeoutRange {
+    /// ms
+    pub default: u32,
+    /// ms
+    pub min: u32,
+    /// ms
+    pub max: u32,
+}
+
+/// `UcmmTimeout`. Document 13032001 on Micro800 CIP messages, CIPTARGETCFG.
+pub const UCMM_TIMEOUT: TimeoutRange = TimeoutRange { default: 3_000, min: 250, max: 10_000 };
+
+/// `ConnMsgTimeout`. Document 13032001 on Micro800 CIP messages, CIPTARGETCFG.
+pub const CONN_MSG_TIMEOUT: TimeoutRange = TimeoutRange { default: 10_000, min: 800, max: 10_000 };

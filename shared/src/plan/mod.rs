@@ -1,0 +1,134 @@
+//! A configuration → a message that can be sent, or all findings. The only place that turns text into requests.
+
+mod checks;
+mod finding;
+pub mod limits;
+
+use alloc::vec::Vec;
+
+use crate::config::{Channel, MsgCipGeneric, Target};
+use crate::table::{self, Access};
+use crate::wire::{Epath, LogicalKind, MessageRouterRequest, ServiceCode};
+
+use self::checks::Checks;
+pub use self::finding::{Feature, Field, Finding, Rule, Severity};
+
+/// A message that can be sent. Exists only for a configuration without errors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MessagePlan {
+    request: MessageRouterRequest,
+    target: Target,
+    channel: Channel,
+    trigger: TriggerType,
+    ucmm_timeout_ms: u32,
+    res_data_size: u16,
+    access: Access,
+    resume: bool,
+}
+
+/// When a block whose IN is TRUE triggers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TriggerType {
+    /// Once per rising edge of IN.
+    Once,
+    /// As fast as possible: the next millisecond after the end.
+    Fast,
+    /// Start to start, in ms: 2..=65535.
+    Every(u16),
+}
+
+impl MessagePlan {
+    /// Runs every rule, so that a form shows all findings at once.
+    pub fn parse(config: &MsgCipGeneric) -> (Option<Self>, Vec<Finding>) {
+        let mut checks = Checks::default();
+        checks.block(config);
+        let trigger = checks.ctrl_cfg(&config.ctrl_cfg);
+        let app = checks.app_cfg(&config.app_cfg);
+        let target = checks.target_cfg(&config.target_cfg);
+        let data = checks.request_data(config);
+        let res_data_size = checks.res_data_size(config);
+        let access = app.as_ref().map(|app| table::classify(app.service, app.class));
+        checks.resume(config, access);
+        let request = app.zip(data).and_then(|(app, data)| checks.request(app.service, app.path(), data));
+        let plan = || {
+            let (target, ucmm_timeout_ms) = target?;
+            Some(Self {
+                request: request?,
+                target,
+                channel: config.channel,
+                trigger: trigger?,
+                ucmm_timeout_ms,
+                res_data_size: res_data_size?,
+                access: access?,
+                resume: config.resume,
+            })
+        };
+        let plan = plan();
+        let findings = checks.findings;
+        let plan = plan.filter(|_| findings.iter().all(|finding| finding.severity != Severity::Error));
+        (plan, findings)
+    }
+
+    /// Service, path and data.
+    pub const fn request(&self) -> &MessageRouterRequest {
+        &self.request
+    }
+
+    /// Where it goes.
+    pub const fn target(&self) -> &Target {
+        &self.target
+    }
+
+    /// Whose limits apply.
+    pub const fn channel(&self) -> Channel {
+        self.channel
+    }
+
+    /// When it triggers.
+    pub const fn trigger(&self) -> TriggerType {
+        self.trigger
+    }
+
+    /// ms, already in its range.
+    pub const fn ucmm_timeout_ms(&self) -> u32 {
+        self.ucmm_timeout_ms
+    }
+
+    /// Bytes that `ResData` holds: 1..=490.
+    pub const fn res_data_size(&self) -> u16 {
+        self.res_data_size
+    }
+
+    /// Whether it reads, writes, or nobody knows.
+    pub const fn access(&self) -> Access {
+        self.access
+    }
+
+    /// Whether IN is restored after a start of the relay.
+    pub const fn resume(&self) -> bool {
+        self.resume
+    }
+}
+
+/// The numbers of CIPAPPCFG, all in range.
+struct App {
+    service: ServiceCode,
+    class: u16,
+    instance: u32,
+    attribute: u16,
+    members: Vec<u16>,
+}
+
+impl App {
+    /// Class, instance, attribute if not 0, then the member segments.
+    fn path(&self) -> Epath {
+        let mut path = Epath::object(self.class, self.instance);
+        if self.attribute != 0 {
+            path = path.then(LogicalKind::Attribute, self.attribute.into());
+        }
+        self.members.iter().fold(path, |path, member| path.then(LogicalKind::Member, (*member).into()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+use super::*;
+use alloc::string::{String, ToString};
+use hex_literal::hex;
+
+fn block() -> MsgCipGeneric {
+    MsgCipGeneric::product_name("4,192.168.1.100")
+}
+
+fn findings(change: impl FnOnce(&mut MsgCipGeneric)) -> Vec<(String, Severity, String)> {
+    let mut config = block();
+    change(&mut config);
+    let (plan, findings) = MessagePlan::parse(&config);
+    let errors = findings.iter().any(|finding| finding.severity == Severity::Error);
+    assert_eq!(plan.is_none(), errors, "a plan exists only without errors");
+    findings.iter().map(|f| (f.field.to_string(), f.severity, f.rule.name().to_string())).collect()
+}
+
+fn one(change: impl FnOnce(&mut MsgCipGeneric)) -> (String, Severity, String) {
+    let all = findings(change);
+    assert_eq!(all.len(), 1, "{all:?}");
+    all.into_iter().next().unwrap()
+}
+
+fn row(field: &str, severity: Severity, rule: &str) -> (String, Severity, String) {
+    (field.into(), severity, rule.into())
+}
+
+#[test]
+fn the_first_message_has_no_finding() {
+    let (plan, findings) = MessagePlan::parse(&block());
+    assert_eq!(findings, []);
+    let plan = plan.unwrap();
+    assert_eq!(plan.request().bytes(), hex!("0E 03 20 01 24 01 30 07"));
+    assert_eq!((plan.ucmm_timeout_ms(), plan.res_data_size()), (3000, 490));
+    assert_eq!((plan.access(), plan.trigger()), (Access::Read, TriggerType::Once));
+}
+
+#[test]
+fn path_order_is_class_instance_attribute_members() {
+    let mut config = block();
+    config.app_cfg.class = 0x374;
+    config.app_cfg.instance = 274;
+    config.app_cfg.attribute = 1;
+    config.app_cfg.member_cnt = 2;
+    config.app_cfg.member_id = alloc::vec![1, 300, 9];
+    let plan = MessagePlan::parse(&config).0.unwrap();
+    assert_eq!(plan.request().bytes(), hex!("0E 08 21 00 74 03 25 00 12 01 30 01 28 01 29 00 2C 01"));
+    config.app_cfg.attribute = 0;
+    config.app_cfg.member_cnt = 0;
+    let plan = MessagePlan::parse(&config).0.unwrap();
+    assert_eq!(plan.request().bytes(), hex!("0E 04 21 00 74 03 25 00 12 01"), "attribute 0 means none");
+}
+
+#[test]
+fn every_range_is_checked_at_both_ends() {
+    type Set = fn(&mut MsgCipGeneric, i64);
+    let rows: [(&str, Set, i64, i64); 12] = [
+        ("AppCfg.Service", |c, v| c.app_cfg.service = v, 1, 127),
+        ("AppCfg.Class", |c, v| c.app_cfg.class = v, 1, 65_535),
+        ("AppCfg.Instance", |c, v| c.app_cfg.instance = v, 0, 4_294_967_295),
+        ("AppCfg.Attribute", |c, v| c.app_cfg.attribute = v, 0, 65_535),
+        ("AppCfg.MemberCnt", |c, v| c.app_cfg.member_cnt = v, 0, 3),
+        ("AppCfg.MemberId[1]", |c, v| c.app_cfg.member_id[1] = v, 0, 65_535),
+        ("CtrlCfg.TriggerType", |c, v| c.ctrl_cfg.trigger_type = v, 0, 65_535),
+        ("CtrlCfg.StrMode", |c, v| c.ctrl_cfg.str_mode = v, 0, 255),
+        ("TargetCfg.UcmmTimeout", |c, v| c.target_cfg.ucmm_timeout = v, 0, 4_294_967_295),
+        ("TargetCfg.ConnMsgTimeout", |c, v| c.target_cfg.conn_msg_timeout = v, 0, 4_294_967_295),
+        ("ResDataSize", |c, v| c.res_data_size = v, 1, 490),
+        ("ReqLength", |c, v| (c.req_data, c.req_length) = ("00".repeat(490), Some(v)), 0, 490),
+    ];
+    for (field, set, min, max) in rows {
+        for (value, fits) in [(min - 1, false), (min, true), (max, true), (max + 1, false)] {
+            let errors = findings(|config| set(config, value));
+            let refused = errors.contains(&row(field, Severity::Error, "out_of_range"));
+            assert_eq!(refused, !fits, "{field} = {value}: {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn all_findings_come_at_once() {
+    let all = findings(|config| {
+        config.app_cfg.service = 300;
+        config.app_cfg.class = 0;
+        config.target_cfg.path = "6,1".into();
+        config.req_data = "0".into();
+    });
+    let fields: Vec<_> = all.iter().map(|(field, ..)| field.as_str()).collect();
+    assert_eq!(fields, ["AppCfg.Service", "AppCfg.Class", "TargetCfg.Path", "ReqData"]);
+}
+
+#[test]
+fn errors_carry_the_numbers_of_the_controller() {
+    type Change = fn(&mut MsgCipGeneric);
+    type Ids = Option<(u16, Option<u16>)>;
+    let rows: [(Change, Ids); 11] = [
+        (|c| c.app_cfg.service = 300, Some((33, Some(50)))),
+        (|c| c.app_cfg.class = 0, Some((33, Some(43)))),
+        (|c| c.app_cfg.member_cnt = 4, Some((33, Some(43)))),
+        (|c| c.target_cfg.path = "6,1".into(), Some((33, Some(32)))),
+        (|c| c.target_cfg.path = String::new(), Some((33, Some(49)))),
+        (|c| c.target_cfg.path = "4,10.0.0.1,1,0,1,1".into(), Some((33, Some(49)))),
+        (|c| c.target_cfg.cip_conn_mode = 2, Some((33, Some(36)))),
+        (|c| c.req_data = "00".repeat(491), Some((33, Some(51)))),
+        (|c| c.req_length = Some(1), Some((33, Some(48)))),
+        (|c| c.target_cfg.path = "4,10.0.0.1,1,0".into(), None),
+        (|c| c.target_cfg.cip_conn_mode = 1, None),
+    ];
+    for (change, ids) in rows {
+        let mut config = block();
+        change(&mut config);
+        let (_, findings) = MessagePlan::parse(&config);
+        assert_eq!(findings.iter().map(Finding::error_ids).collect::<Vec<_>>(), [ids], "{findings:?}");
+    }
+}
+
+#[test]
+fn what_is_not_built_yet_is_never_sent_another_way() {
+    let route = one(|config| config.target_cfg.path = "4,192.168.1.100,1,0".into());
+    assert_eq!(route, row("TargetCfg.Path", Severity::Error, "not_available"));
+    let class_3 = one(|config| config.target_cfg.cip_conn_mode = 1);
+    assert_eq!(class_3, row("TargetCfg.CipConnMode", Severity::Error, "not_available"));
+}
+
+#[test]
+fn timeouts_are_clamped_with_a_note() {
+    for (given, used) in [(0, 3000), (1, 250), (249, 250), (250, 250), (10_000, 10_000), (10_001, 10_000)] {
+        let mut config = block();
+        config.target_cfg.ucmm_timeout = given;
+        let (plan, findings) = MessagePlan::parse(&config);
+        assert_eq!(plan.unwrap().ucmm_timeout_ms(), used, "{given}");
+        let noted = findings.iter().any(|f| f.severity == Severity::Note && f.field == Field::UcmmTimeout);
+        assert_eq!(noted, given != 0 && i64::from(used) != given, "{given}");
+    }
+    let note = one(|config| config.target_cfg.conn_msg_timeout = 799);
+    assert_eq!(note, row("TargetCfg.ConnMsgTimeout", Severity::Note, "clamped"));
+}
+
+#[test]
+fn req_length_cuts_the_data_with_a_note() {
+    let mut config = block();
+    config.req_data = "01 02 03".into();
+    config.req_length = Some(2);
+    let (plan, findings) = MessagePlan::parse(&config);
+    assert_eq!(plan.unwrap().request().data(), [1, 2]);
+    assert_eq!(findings.first().map(|f| (&f.field, f.severity)), Some((&Field::ReqLength, Severity::Note)));
+    config.req_length = None;
+    assert_eq!(MessagePlan::parse(&config).0.unwrap().request().data(), [1, 2, 3]);
+}
+
+#[test]
+fn odd_hex_is_a_finding_with_its_place() {
+    let mut config = block();
+    config.req_data = "0A 0".into();
+    let (_, findings) = MessagePlan::parse(&config);
+    assert_eq!(
+        findings[0].rule.to_string(),
+        "half a byte at character 4: each byte needs two hexadecimal digits"
+    );
+}
+
+#[test]
+fn resume_is_for_reads() {
+    let read = findings(|config| config.resume = true);
+    assert_eq!(read, []);
+    for service in [16, 75] {
+        let refused = one(|config| (config.resume, config.app_cfg.service) = (true, service));
+        assert_eq!(refused, row("Resume", Severity::Error, "resume_needs_read"));
+    }
+}
+
+#[test]
+fn an_unknown_member_is_a_warning_with_its_place() {
+    let warning = one(|config| {
+        config.app_cfg.extra.insert("Atribute".into(), 7.into());
+    });
+    assert_eq!(warning, row("AppCfg.Atribute", Severity::Warning, "unknown_member"));
+}
+
+#[test]
+fn member_id_has_three_entries() {
+    for count in [0, 2, 4] {
+        let error = one(|config| config.app_cfg.member_id = alloc::vec![0; count]);
+        assert_eq!(error, row("AppCfg.MemberId", Severity::Error, "member_id_count"), "{count}");
+    }
+}
+
+#[test]
+fn a_trigger_type_over_255_is_a_note() {
+    let note = one(|config| config.ctrl_cfg.trigger_type = 256);
+    assert_eq!(note, row("CtrlCfg.TriggerType", Severity::Note, "over_usint"));
+}
+
+#[test]
+fn every_rule_has_a_key_that_is_listed() {
+    for rule in [Rule::Missing, Rule::Reserved, Rule::NotAvailable(Feature::Class3), Rule::OverUsint] {
+        assert!(Rule::KEYS.contains(&rule.key()) && Rule::KEYS.contains(&rule.name()));
+    }
+}
