@@ -1,2 +1,7 @@
-//! The command line tool.
-fn main() {}
+//! The binary `cipdeck`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cipdeck_relay::cli::main()
+}

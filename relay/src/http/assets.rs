@@ -1,0 +1,70 @@
+//! The page, embedded in the binary.
+
+use axum::http::{HeaderValue, Method, StatusCode, Uri, header};
+use axum::response::{Html, IntoResponse, Response};
+use rust_embed::RustEmbed;
+
+use crate::error::ApiError;
+
+#[derive(RustEmbed)]
+#[folder = "../frontend/dist"]
+#[allow_missing = true]
+struct Page;
+
+/// A file of the page; for every address without a file ending the page itself, which knows its own routes.
+pub(crate) async fn show(method: Method, uri: Uri) -> Response {
+    let path = uri.path().trim_start_matches('/');
+    if !matches!(method, Method::GET | Method::HEAD) {
+        return ApiError::NotFound(format!("nothing takes {method} at /{path}")).into_response();
+    }
+    let is_route = !path.rsplit('/').next().unwrap_or_default().contains('.');
+    match Page::get(if is_route { "index.html" } else { path }) {
+        Some(file) => serve(if is_route { "index.html" } else { path }, file.data.into_owned()),
+        None if is_route => not_built().into_response(),
+        None => ApiError::NotFound(format!("nothing is at /{path}")).into_response(),
+    }
+}
+
+fn serve(path: &str, content: Vec<u8>) -> Response {
+    let kind = mime_guess::from_path(path).first_or_octet_stream();
+    let content_type = match kind.essence_str() {
+        "text/html" | "text/javascript" | "text/css" => format!("{}; charset=utf-8", kind.essence_str()),
+        other => other.to_owned(),
+    };
+    let cache = if is_hashed(path) { "public, max-age=31536000, immutable" } else { "no-cache" };
+    let content_type = HeaderValue::from_str(&content_type)
+        .unwrap_or_else(|_| HeaderValue::from_static("application/octet-stream"));
+    (
+        [(header::CONTENT_TYPE, content_type), (header::CACHE_CONTROL, HeaderValue::from_static(cache))],
+        content,
+    )
+        .into_response()
+}
+
+/// A name that changes with the content: `page-0123456789abcdef.wasm`.
+fn is_hashed(path: &str) -> bool {
+    let stem = path.rsplit('/').next().unwrap_or_default().split('.').next().unwrap_or_default();
+    stem.rsplit_once('-')
+        .is_some_and(|(_, hash)| hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()))
+}
+
+/// The relay compiles without a built page, and then says how to build it.
+fn not_built() -> impl IntoResponse {
+    let text = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>cipdeck</title>\
+                <h1>This relay was built without its page</h1>\
+                <p>Build it with <code>cargo xtask run</code>, or use the interfaces: <a href=\"/api/v1/health\">/api/v1/health</a>.</p></html>";
+    (StatusCode::OK, [(header::CACHE_CONTROL, "no-cache")], Html(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_that_change_with_their_content_are_kept_for_ever() {
+        assert!(is_hashed("page-0123456789abcdef.wasm"));
+        for path in ["index.html", "page.js", "snippets/gloo-0123/inline0.js", "page-0123456789abcdeg.js"] {
+            assert!(!is_hashed(path), "{path}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! REST under `/api/v1`, and the page under everything else. docs/REST.md describes the interface.
+
+mod assets;
+mod guard;
+mod health;
+
+use axum::Router;
+use axum::http::{HeaderName, HeaderValue, Uri, header};
+use axum::middleware;
+use axum::response::Response;
+use axum::routing::get;
+
+use crate::app::App;
+use crate::error::ApiError;
+
+pub(crate) use self::guard::AllowedHosts;
+
+/// Everything that the relay serves.
+pub(crate) fn router(app: App) -> Router {
+    let api = Router::new()
+        .route("/health", get(health::show))
+        .fallback(unknown)
+        .method_not_allowed_fallback(unknown);
+    Router::new()
+        .nest("/api/v1", api)
+        .route("/api", get(unknown))
+        .route("/api/{*rest}", get(unknown))
+        .fallback(assets::show)
+        .layer(middleware::from_fn_with_state(app.clone(), guard::check))
+        .layer(middleware::map_response(secure))
+        .with_state(app)
+}
+
+async fn unknown(uri: Uri) -> ApiError {
+    ApiError::NotFound(format!("nothing is at {}", uri.path()))
+}
+
+/// Nothing is loaded from elsewhere, nothing frames the page, no address leaks.
+const SECURITY_HEADERS: [(HeaderName, &str); 5] = [
+    (
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; connect-src 'self'; \
+         img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::REFERRER_POLICY, "no-referrer"),
+    (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+];
+
+async fn secure(mut response: Response) -> Response {
+    for (name, value) in SECURITY_HEADERS {
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    response
+}

@@ -1,0 +1,176 @@
+//! What can be configured, from a TOML file and from flags; a flag overrides the file. docs/CONFIGURATION.md
+//! describes every key.
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+/// Where the relay listens unless told otherwise.
+pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 8818);
+
+/// What is logged unless told otherwise.
+const DEFAULT_LOG: &str = "info";
+
+/// Name of the database in the data folder.
+const DATABASE: &str = "cipdeck.sqlite";
+
+/// Everything that can be configured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Where to listen. Loopback addresses only.
+    pub listen: SocketAddr,
+    /// The folder of the database; `None` keeps blocks in memory and loses them at the end.
+    pub data: Option<PathBuf>,
+    /// Which log records are written: a level, or `target=level` separated by commas.
+    pub log: String,
+    /// How log records are written.
+    pub log_format: LogFormat,
+}
+
+/// How log records are written to stderr.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum LogFormat {
+    /// Lines for people.
+    #[default]
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+/// The keys of the file, and the flags: both may leave out everything.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Given {
+    /// `listen = "127.0.0.1:8818"`
+    pub listen: Option<SocketAddr>,
+    /// `data = "/var/lib/cipdeck"`
+    pub data: Option<PathBuf>,
+    /// `log = "info,cipdeck_relay=debug"`
+    pub log: Option<String>,
+    /// `log_format = "json"`
+    pub log_format: Option<LogFormat>,
+}
+
+impl Settings {
+    /// Blocks live in memory only.
+    pub fn in_memory() -> Self {
+        Self {
+            listen: DEFAULT_LISTEN,
+            data: None,
+            log: DEFAULT_LOG.to_owned(),
+            log_format: LogFormat::default(),
+        }
+    }
+
+    /// Blocks live in a database in this folder.
+    pub fn stored_in(folder: impl Into<PathBuf>) -> Self {
+        Self { data: Some(folder.into()), ..Self::in_memory() }
+    }
+
+    /// What the flags say, then what the file says, then the defaults.
+    pub fn resolve(flags: Given, file: Given) -> Result<Self, SettingsError> {
+        let data = flags.data.or(file.data).or_else(default_data).ok_or(SettingsError::NoDataFolder)?;
+        Ok(Self {
+            listen: flags.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN),
+            data: Some(data),
+            log: flags.log.or(file.log).unwrap_or_else(|| DEFAULT_LOG.to_owned()),
+            log_format: flags.log_format.or(file.log_format).unwrap_or_default(),
+        })
+    }
+
+    /// The database file.
+    #[expect(dead_code, reason = "read once there is a store")]
+    pub(crate) fn database(&self) -> Option<PathBuf> {
+        self.data.as_ref().map(|folder| folder.join(DATABASE))
+    }
+}
+
+impl Given {
+    /// Reads a file. An unknown key is an error that names it.
+    pub fn read(path: &Path) -> Result<Self, SettingsError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SettingsError::Unreadable { path: path.to_owned(), source })?;
+        Self::parse(&text)
+            .map_err(|source| SettingsError::Invalid { path: path.to_owned(), source: Box::new(source) })
+    }
+
+    fn parse(text: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+}
+
+/// Why the settings cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// The file is not there, or must not be read.
+    #[error("cannot read the configuration file {path}: {source}", path = path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Unknown key, wrong type, not TOML.
+    #[error("the configuration file {path} has an error:\n{source}", path = path.display())]
+    Invalid {
+        /// Which file.
+        path: PathBuf,
+        /// Where and what.
+        source: Box<toml::de::Error>,
+    },
+    /// Neither a flag nor a home folder.
+    #[error("no folder for data: this user has no home folder; give one with --data")]
+    NoDataFolder,
+}
+
+/// The user's folder for application data.
+fn default_data() -> Option<PathBuf> {
+    let folder =
+        |variable: &str| std::env::var_os(variable).filter(|text| !text.is_empty()).map(PathBuf::from);
+    let base = if cfg!(windows) {
+        folder("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        folder("HOME").map(|home| home.join("Library/Application Support"))
+    } else {
+        folder("XDG_DATA_HOME").or_else(|| folder("HOME").map(|home| home.join(".local/share")))
+    };
+    base.map(|base| base.join("cipdeck"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flag_overrides_the_file_and_the_file_the_default() {
+        let file =
+            Given::parse("listen = \"127.0.0.1:9000\"\ndata = \"plant\"\nlog_format = \"json\"").unwrap();
+        let flags = Given { listen: Some("[::1]:1".parse().unwrap()), ..Given::default() };
+        let settings = Settings::resolve(flags, file).unwrap();
+        assert_eq!(settings.listen, "[::1]:1".parse().unwrap());
+        assert_eq!(settings.data, Some(PathBuf::from("plant")));
+        assert_eq!((settings.log.as_str(), settings.log_format), ("info", LogFormat::Json));
+    }
+
+    #[test]
+    fn an_unknown_key_is_named() {
+        let error = Given::parse("listne = \"127.0.0.1:9000\"").unwrap_err().to_string();
+        assert!(error.contains("listne"), "{error}");
+        assert!(Given::parse("listen = \"everywhere\"").is_err());
+    }
+
+    #[test]
+    fn every_key_is_documented() {
+        let text = include_str!("../../docs/CONFIGURATION.md");
+        for key in ["listen", "data", "log", "log_format"] {
+            assert!(text.contains(&format!("| `{key}` |")), "docs/CONFIGURATION.md does not describe {key}");
+        }
+        // The example in the document holds every key and is accepted as it stands.
+        let example = text.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let given = Given::parse(example).unwrap();
+        let Given { listen, data, log, log_format } = given;
+        assert!(listen.is_some() && data.is_some() && log.is_some() && log_format.is_some());
+    }
+}

@@ -1,0 +1,130 @@
+//! The relay as a web server: who may call, what is answered, how it starts and stops.
+
+#![expect(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+mod common;
+
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Stdio};
+
+use cipdeck_relay::{RunError, Settings};
+use tokio::net::TcpListener;
+
+use self::common::Relay;
+
+fn problem(status: u16, code: &str) -> (u16, String) {
+    (status, code.to_owned())
+}
+
+#[tokio::test]
+async fn the_page_and_the_interface_are_served_under_a_strict_policy() {
+    let relay = Relay::start(Settings::in_memory()).await;
+    for path in ["/", "/monitor", "/api/v1/health"] {
+        let reply = relay.ask("GET", path, "").await;
+        assert_eq!(reply.status, 200, "{path}: {reply:?}");
+        for header in [
+            "content-security-policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval';",
+            "x-content-type-options: nosniff",
+            "referrer-policy: no-referrer",
+        ] {
+            assert!(reply.headers.contains(header), "{path}: {header} is missing in {}", reply.headers);
+        }
+    }
+    let page = relay.ask("GET", "/", "").await;
+    assert!(page.headers.contains("content-type: text/html"), "{page:?}");
+    assert!(page.headers.contains("cache-control: no-cache"), "{page:?}");
+    assert_eq!(relay.ask("GET", "/api/v1/health", "").await.json()["status"], "ok");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn an_unknown_address_is_a_problem_not_a_page() {
+    let relay = Relay::start(Settings::in_memory()).await;
+    for (method, path) in [
+        ("GET", "/api/v1/nothing"),
+        ("GET", "/api/v2/health"),
+        ("GET", "/api"),
+        ("POST", "/api/v1/health"),
+        ("GET", "/missing.js"),
+        ("GET", "/../Cargo.toml"),
+        ("POST", "/"),
+    ] {
+        assert_eq!(relay.ask(method, path, "").await.problem(), problem(404, "not_found"), "{method} {path}");
+    }
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_foreign_host_or_origin_is_refused_everywhere() {
+    let relay = Relay::start(Settings::in_memory()).await;
+    let host = relay.address.to_string();
+    for path in ["/", "/api/v1/health", "/api/v1/ws"] {
+        for headers in [
+            &[("Host", "rebound.example")][..],
+            &[("Host", host.as_str()), ("Origin", "http://foreign.example")],
+            &[("Host", host.as_str()), ("Origin", "null")],
+        ] {
+            let reply = relay.ask_with("GET", path, headers, "").await;
+            assert_eq!(reply.problem(), problem(403, "not_permitted"), "{path} {headers:?}");
+        }
+    }
+    let own = format!("http://{host}");
+    let reply = relay.ask_with("GET", "/api/v1/health", &[("Host", &host), ("Origin", &own)], "").await;
+    assert_eq!(reply.status, 200);
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_listener_for_everybody_is_refused() {
+    let listener = TcpListener::bind("0.0.0.0:0").await.unwrap();
+    let refused = cipdeck_relay::run(Settings::in_memory(), listener, std::future::pending()).await;
+    assert!(matches!(refused, Err(RunError::NotLoopback(_))), "{refused:?}");
+}
+
+#[test]
+fn the_command_refuses_addresses_that_others_can_reach() {
+    let output = cipdeck(&["serve", "--listen", "0.0.0.0:0"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("not a loopback address"), "{stderr}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn an_unknown_key_in_the_configuration_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cipdeck.toml");
+    std::fs::write(&file, "listne = \"127.0.0.1:0\"").unwrap();
+    let output = cipdeck(&["serve", "--config", file.to_str().unwrap()]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("listne"), "{stderr}");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_command_prints_one_line_and_stops_when_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().to_str().unwrap();
+    let mut child = cipdeck(&["serve", "--listen", "127.0.0.1:0", "--data", data])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut stdout = BufReader::new(child.stdout.take().unwrap());
+    let mut line = String::new();
+    stdout.read_line(&mut line).unwrap();
+    let address = line.trim().rsplit("http://").next().unwrap();
+    assert!(std::net::TcpStream::connect(address).is_ok(), "{line}");
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let mut rest = String::new();
+    stdout.read_to_string(&mut rest).unwrap();
+    assert_eq!(rest, "", "more than one line");
+}
+
+fn cipdeck(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cipdeck"));
+    command.args(arguments);
+    command
+}
