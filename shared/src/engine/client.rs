@@ -196,10 +196,10 @@ impl Client {
         self.last_used = cx.now;
         if let Link::Registering(_, session) | Link::Ready(_, session) = &mut self.link {
             session.receive(bytes);
+            self.dropped += session.take_dropped();
         }
         while let Link::Registering(_, session) | Link::Ready(_, session) = &mut self.link {
             let Some(received) = session.poll() else { break };
-            self.dropped = self.dropped.max(session.dropped());
             self.received(received, cx);
         }
         self.advance(cx);

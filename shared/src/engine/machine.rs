@@ -492,6 +492,3 @@ impl Engine {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

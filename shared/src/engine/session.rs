@@ -114,9 +114,9 @@ impl Session {
         self.received.pop_front()
     }
 
-    /// Frames that answered nothing: a foreign context, a foreign session, or nothing was asked.
-    pub(super) const fn dropped(&self) -> u64 {
-        self.dropped
+    /// How many new frames answered nothing: a foreign context, a foreign session, or nothing was asked.
+    pub(super) const fn take_dropped(&mut self) -> u64 {
+        core::mem::replace(&mut self.dropped, 0)
     }
 }
 
