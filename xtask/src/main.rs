@@ -1,5 +1,6 @@
 //! `cargo xtask`: builds, runs, tests and checks cipdeck; the one entry for people and for CI.
 
+mod arch;
 mod frontend;
 mod page;
 mod process;
@@ -49,6 +50,11 @@ enum Task {
         #[command(flatten)]
         toolchain: Preference,
     },
+    /// Compares the imports with the layers.
+    Arch {
+        /// The workspace to read, by default this one.
+        root: Option<std::path::PathBuf>,
+    },
 }
 
 impl Task {
@@ -62,6 +68,10 @@ impl Task {
                 let wasm = toolchain::find(report, toolchain)?;
                 let profile = if release { Profile::Shipped } else { Profile::Quick };
                 frontend::build(report, &wasm, profile)?;
+            }
+            Self::Arch { root } => {
+                let root = root.unwrap_or_else(workspace::root);
+                report.step("arch: the arrows between layers and packages", || arch::check(&root))?;
             }
         }
         Ok(())

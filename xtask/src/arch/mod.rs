@@ -1,0 +1,177 @@
+//! `cargo xtask arch`: the arrows between layers and packages, compared with what the sources import.
+
+mod imports;
+mod packages;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result, bail};
+
+use self::imports::Origin;
+
+/// The layers of `shared`, and what each may import from its own crate. An entry `engine::time` allows that module alone.
+const LAYERS: &[(&str, &[&str])] = &[
+    ("wire", &[]),
+    ("table", &["wire"]),
+    ("dissect", &["wire", "table"]),
+    ("config", &["wire"]),
+    ("plan", &["config", "wire", "table"]),
+    ("engine", &["wire", "plan"]),
+    ("sim", &["wire", "engine::time"]),
+    ("api", &["config", "plan", "engine::status"]),
+];
+
+/// Crates that bring I/O or a clock: never named in `shared`.
+const IMPURE: &[&str] = &["std", "tokio", "axum", "rusqlite", "web_sys", "js_sys", "yew"];
+
+/// Reads the workspace in this folder, and fails with every import that the tables do not allow.
+pub(crate) fn check(root: &Path) -> Result<()> {
+    let mut violations = packages::violations(root)?;
+    let sources = root.join("shared").join("src");
+    for file in rust_files(&sources)? {
+        let text = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let module = module_of(file.strip_prefix(&sources)?);
+        let shown = file.strip_prefix(root)?.display().to_string();
+        violations.extend(in_file(&module, &text).into_iter().map(|found| format!("{shown}:{found}")));
+    }
+    if violations.is_empty() {
+        println!("    every import follows the layers");
+        return Ok(());
+    }
+    for violation in &violations {
+        eprintln!("    {violation}");
+    }
+    bail!("{} forbidden import(s)", violations.len());
+}
+
+/// The violations in one file of `shared`, each as `line: what`.
+fn in_file(module: &[String], text: &str) -> Vec<String> {
+    let Some(layer) = module.first() else {
+        return Vec::new(); // lib.rs declares the layers; it imports nothing
+    };
+    let Some((_, allowed)) = LAYERS.iter().find(|(name, _)| name == layer) else {
+        return vec![format!("1: the module {layer} is not in the table of layers (xtask/src/arch)")];
+    };
+    let mut found = Vec::new();
+    for import in imports::read(text, module.len()) {
+        let line = import.line;
+        let path = import.path.join("::");
+        let first = import.path.first().map_or("", String::as_str);
+        let is_layer = LAYERS.iter().any(|(name, _)| *name == first);
+        let inside = match import.origin {
+            Origin::Crate => true,
+            Origin::Super => is_layer,
+            Origin::Name => false,
+        };
+        if inside && first != layer && !allowed.iter().any(|entry| covers(entry, &path)) {
+            let list = if allowed.is_empty() { "nothing".to_owned() } else { allowed.join(", ") };
+            found.push(format!("{line}: {layer} may import {list}, not crate::{path}"));
+        }
+        if import.origin == Origin::Name && IMPURE.contains(&first) {
+            found.push(format!("{line}: shared is pure, it must not name {path}"));
+        }
+    }
+    found
+}
+
+/// Whether the entry `engine::time` allows the path `engine::time::Instant`.
+fn covers(entry: &str, path: &str) -> bool {
+    path.strip_prefix(entry).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+}
+
+/// `engine/session.rs` is the module `engine`, `session`; `engine/mod.rs` is `engine`; `lib.rs` is the root.
+fn module_of(file: &Path) -> Vec<String> {
+    let mut module: Vec<String> =
+        file.with_extension("").iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    if module.last().is_some_and(|last| last == "mod" || last == "lib") {
+        module.pop();
+    }
+    module
+}
+
+/// The sources below a folder, without those that are tests.
+fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        let name = path.file_stem().unwrap_or_default();
+        if name == "tests" {
+            continue;
+        }
+        if path.is_dir() {
+            files.extend(rust_files(&path)?);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(file: &str, text: &str) -> Vec<String> {
+        in_file(&module_of(Path::new(file)), text)
+    }
+
+    #[test]
+    fn a_layer_may_import_itself_and_what_the_table_gives_it() {
+        assert!(
+            found("plan/request.rs", "use crate::{config::Block, plan::Finding, wire::{Epath, open}};")
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn an_arrow_upwards_is_named_with_its_line() {
+        assert_eq!(
+            found("wire/epath.rs", "\nuse crate::plan::Finding;"),
+            ["2: wire may import nothing, not crate::plan::Finding"]
+        );
+    }
+
+    #[test]
+    fn a_path_in_an_expression_counts_like_an_import() {
+        assert_eq!(found("table/mod.rs", "fn f() { crate::sim::start() }").len(), 1);
+    }
+
+    #[test]
+    fn super_does_not_lead_around_the_table() {
+        assert_eq!(
+            found("config/path.rs", "use super::super::engine::Client;"),
+            ["1: config may import wire, not crate::engine::Client"]
+        );
+        assert!(found("config/path.rs", "use super::block::Block;").is_empty());
+        assert!(found("config/mod.rs", "mod inline { use super::Block; }").is_empty());
+    }
+
+    #[test]
+    fn the_simulator_sees_the_engine_s_time_and_nothing_else_of_it() {
+        assert!(found("sim/mod.rs", "use crate::engine::time::Instant;").is_empty());
+        assert_eq!(found("sim/mod.rs", "use crate::engine::{time::Instant, Client};").len(), 1);
+    }
+
+    #[test]
+    fn shared_names_neither_std_nor_an_io_crate() {
+        assert_eq!(found("engine/mod.rs", "use std::time::Instant;").len(), 1);
+        assert_eq!(found("engine/mod.rs", "async fn f() { tokio::time::sleep(d).await }").len(), 1);
+        assert!(found("engine/mod.rs", "use core::time::Duration; use alloc::vec::Vec;").is_empty());
+    }
+
+    #[test]
+    fn comments_texts_and_unit_tests_are_not_imports() {
+        let text = "/// See [`crate::sim`].\nconst A: &str = \"crate::sim\";\n#[cfg(test)]\nmod tests {\n use crate::sim;\n use std::vec;\n}";
+        assert!(found("wire/mod.rs", text).is_empty());
+    }
+
+    #[test]
+    fn a_module_that_the_table_does_not_know_is_an_error() {
+        assert_eq!(found("utils.rs", "").len(), 1);
+    }
+}
