@@ -4,13 +4,14 @@ mod imports;
 mod packages;
 
 use std::{
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
 
 use anyhow::{Context, Result, bail};
 
-use self::imports::Origin;
+use self::imports::{Import, Origin};
 
 /// The layers of `shared`, and what each may import from its own crate. An entry `engine::time` allows that module alone.
 const LAYERS: &[(&str, &[&str])] = &[
@@ -24,21 +25,43 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("api", &["config", "plan", "engine::status"]),
 ];
 
+/// The types of `engine::status`, under the names that `engine` gives them.
+const STATUS_TYPES: &[&str] =
+    &["engine::Cause", "engine::CauseKind", "engine::CipStatus", "engine::Phase", "engine::StatusBits"];
+
+/// Imports that the table does not allow and that are there: known one by one, and named at each run, until the
+/// code or the table changes. Nothing else passes.
+const DEVIATIONS: &[(&str, &str)] = &[
+    ("engine", "config::BlockId"),
+    ("engine", "config::Channel"),
+    ("engine", "config::Target"),
+    ("api", "engine::BlockView"),
+];
+
 /// Crates that bring I/O or a clock: never named in `shared`.
 const IMPURE: &[&str] = &["std", "tokio", "axum", "rusqlite", "web_sys", "js_sys", "yew"];
 
 /// Reads the workspace in this folder, and fails with every import that the tables do not allow.
 pub(crate) fn check(root: &Path) -> Result<()> {
     let mut violations = packages::violations(root)?;
+    let mut deviations = BTreeSet::new();
     let sources = root.join("shared").join("src");
     for file in rust_files(&sources)? {
         let text = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let module = module_of(file.strip_prefix(&sources)?);
         let shown = file.strip_prefix(root)?.display().to_string();
-        violations.extend(in_file(&module, &text).into_iter().map(|found| format!("{shown}:{found}")));
+        for found in in_file(&module, &text) {
+            match found.deviation {
+                Some((layer, path)) => _ = deviations.insert(format!("{layer} -> {path}")),
+                None => violations.push(format!("{shown}:{}: {}", found.line, found.what)),
+            }
+        }
+    }
+    for deviation in &deviations {
+        println!("    known deviation from the layers: {deviation}");
     }
     if violations.is_empty() {
-        println!("    every import follows the layers");
+        println!("    every other import follows the layers");
         return Ok(());
     }
     for violation in &violations {
@@ -47,34 +70,49 @@ pub(crate) fn check(root: &Path) -> Result<()> {
     bail!("{} forbidden import(s)", violations.len());
 }
 
-/// The violations in one file of `shared`, each as `line: what`.
-fn in_file(module: &[String], text: &str) -> Vec<String> {
+/// An import that the table does not allow.
+#[derive(Debug)]
+struct Found {
+    line: usize,
+    what: String,
+    deviation: Option<&'static (&'static str, &'static str)>,
+}
+
+/// The imports in one file of `shared` that the table does not allow.
+fn in_file(module: &[String], text: &str) -> Vec<Found> {
     let Some(layer) = module.first() else {
         return Vec::new(); // lib.rs declares the layers; it imports nothing
     };
     let Some((_, allowed)) = LAYERS.iter().find(|(name, _)| name == layer) else {
-        return vec![format!("1: the module {layer} is not in the table of layers (xtask/src/arch)")];
+        let what = format!("the module {layer} is not in the table of layers (xtask/src/arch)");
+        return vec![Found { line: 1, what, deviation: None }];
     };
-    let mut found = Vec::new();
-    for import in imports::read(text, module.len()) {
-        let line = import.line;
-        let path = import.path.join("::");
-        let first = import.path.first().map_or("", String::as_str);
-        let is_layer = LAYERS.iter().any(|(name, _)| *name == first);
-        let inside = match import.origin {
-            Origin::Crate => true,
-            Origin::Super => is_layer,
-            Origin::Name => false,
-        };
-        if inside && first != layer && !allowed.iter().any(|entry| covers(entry, &path)) {
-            let list = if allowed.is_empty() { "nothing".to_owned() } else { allowed.join(", ") };
-            found.push(format!("{line}: {layer} may import {list}, not crate::{path}"));
-        }
-        if import.origin == Origin::Name && IMPURE.contains(&first) {
-            found.push(format!("{line}: shared is pure, it must not name {path}"));
-        }
+    let imports = imports::read(text, module.len());
+    imports.iter().filter_map(|import| judge(layer, allowed, import)).collect()
+}
+
+fn judge(layer: &str, allowed: &[&str], import: &Import) -> Option<Found> {
+    let path = import.path.join("::");
+    let first = import.path.first().map_or("", String::as_str);
+    let line = import.line;
+    let inside = match import.origin {
+        Origin::Crate => true,
+        Origin::Super => LAYERS.iter().any(|(name, _)| *name == first),
+        Origin::Name => false,
+    };
+    if !inside {
+        let impure = import.origin == Origin::Name && IMPURE.contains(&first);
+        let what = format!("shared is pure, it must not name {path}");
+        return impure.then_some(Found { line, what, deviation: None });
     }
-    found
+    let of_status =
+        allowed.contains(&"engine::status") && STATUS_TYPES.iter().any(|name| covers(name, &path));
+    if first == layer || of_status || allowed.iter().any(|entry| covers(entry, &path)) {
+        return None;
+    }
+    let deviation = DEVIATIONS.iter().find(|(from, to)| *from == layer && covers(to, &path));
+    let list = if allowed.is_empty() { "nothing".to_owned() } else { allowed.join(", ") };
+    Some(Found { line, what: format!("{layer} may import {list}, not crate::{path}"), deviation })
 }
 
 /// Whether the entry `engine::time` allows the path `engine::time::Instant`.
@@ -117,7 +155,8 @@ mod tests {
     use super::*;
 
     fn found(file: &str, text: &str) -> Vec<String> {
-        in_file(&module_of(Path::new(file)), text)
+        let found = in_file(&module_of(Path::new(file)), text);
+        found.iter().map(|found| format!("{}: {}", found.line, found.what)).collect()
     }
 
     #[test]
@@ -155,6 +194,24 @@ mod tests {
     fn the_simulator_sees_the_engine_s_time_and_nothing_else_of_it() {
         assert!(found("sim/mod.rs", "use crate::engine::time::Instant;").is_empty());
         assert_eq!(found("sim/mod.rs", "use crate::engine::{time::Instant, Client};").len(), 1);
+    }
+
+    #[test]
+    fn a_known_deviation_covers_its_layer_and_its_name_alone() {
+        let known = |file: &str, text: &str| {
+            in_file(&module_of(Path::new(file)), text)
+                .iter()
+                .map(|found| found.deviation.is_some())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(known("engine/entry.rs", "use crate::config::{Target, MsgCipGeneric};"), [true, false]);
+        assert_eq!(known("wire/epath.rs", "use crate::config::Target;"), [false]);
+    }
+
+    #[test]
+    fn the_status_types_are_the_interface_s_way_into_the_engine() {
+        assert!(found("api/status.rs", "use crate::engine::{Phase, StatusBits, status::Cause};").is_empty());
+        assert_eq!(found("api/status.rs", "use crate::engine::Engine;").len(), 1);
     }
 
     #[test]
