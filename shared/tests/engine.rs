@@ -1,5 +1,5 @@
 //! The engine against a scripted target: virtual time, no sockets.
-#![expect(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, reason = "a test may fail")]
+#![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail")]
 #![expect(clippy::std_instead_of_alloc, reason = "tests have std")]
 
 use std::collections::BTreeMap;
