@@ -6,6 +6,7 @@
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
 //! | [`table`] | codes → names, explanations and sources; which services write |
+//! | [`dissect`] | bytes → what they mean, byte by byte |
 //! | [`sim`] | a simulated device |
 //! | [`config`] | what is stored: blocks with the manual's names |
 //! | [`plan`] | a configuration → a message that can be sent, or all findings |
@@ -17,6 +18,7 @@ extern crate alloc;
 
 pub mod api;
 pub mod config;
+pub mod dissect;
 pub mod engine;
 pub mod plan;
 pub mod sim;
