@@ -1,0 +1,8 @@
+//! The engine, driven as its owner drives it: virtual time, no sockets.
+#![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail")]
+#![expect(clippy::std_instead_of_alloc, reason = "tests have std")]
+
+#[cfg(not(target_arch = "wasm32"))]
+mod any;
+mod owner;
+mod promises;
