@@ -1,4 +1,5 @@
 //! Frames that others have sent: decoded, compared, and encoded again byte for byte.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, reason = "a test may fail")]
 
 mod common;
 

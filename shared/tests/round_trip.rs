@@ -1,6 +1,6 @@
 //! What is encoded decodes to the same.
 #![cfg(not(target_arch = "wasm32"))]
-#![expect(clippy::unwrap_used, reason = "a test may fail")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, reason = "a test may fail")]
 
 use cipdeck_shared::wire::{
     AdditionalStatus, CipType, CipValue, Command, CommonPacketFormat, Deframer, Encapsulation,

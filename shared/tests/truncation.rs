@@ -1,4 +1,5 @@
 //! Bytes that end too early, and bytes that are nothing: an error at a byte that is there, never a panic.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, reason = "a test may fail")]
 
 mod common;
 
