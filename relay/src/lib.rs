@@ -7,10 +7,15 @@ pub mod cli;
 pub mod settings;
 
 mod app;
+mod draft;
 mod error;
 mod http;
+mod permit;
+mod runner;
 mod shutdown;
+mod simulate;
 mod telemetry;
+mod wall_clock;
 
 use std::future::Future;
 

@@ -3,6 +3,8 @@
 
 use std::process::ExitCode;
 
+use cipdeck_shared::engine::CipStatus;
+
 /// How the process ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Exit {
@@ -23,6 +25,24 @@ impl Exit {
     pub(crate) fn usage(message: &impl ToString) -> Self {
         Self { code: 2, message: Some(message.to_string()) }
     }
+
+    /// A message that did not end well, and did not even end by itself.
+    pub(crate) fn interrupted(message: &impl ToString) -> Self {
+        Self { code: 4, message: Some(message.to_string()) }
+    }
+
+    /// How a message ended. What is to be said has been said.
+    pub(crate) const fn message(status: &CipStatus) -> Self {
+        let code = match status {
+            CipStatus { error: false, .. } => 0,
+            CipStatus { error_id: 224, .. } => 3,
+            _ => 4,
+        };
+        Self { code, message: None }
+    }
+
+    /// Error findings. What is to be said has been said.
+    pub(crate) const FINDINGS: Self = Self { code: 2, message: None };
 
     /// Says on stderr what is left to say.
     pub(crate) fn report(self) -> ExitCode {

@@ -1,26 +1,59 @@
 //! Everything that a person types: `cipdeck serve`, and the commands that talk to a device from here.
 
+mod check;
 mod exit;
+mod explain;
+mod once;
+mod report;
+mod run;
+mod send;
 mod serve;
+mod simulate;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 
 pub(crate) use self::exit::Exit;
+use crate::settings::LogFormat;
+use crate::telemetry;
 
 /// The workbench for EtherNet/IP explicit messages.
 #[derive(Debug, Parser)]
-#[command(name = "cipdeck", version, about, max_term_width = 100)]
+#[command(name = "cipdeck", version, about, max_term_width = 100, after_help = EXIT_CODES)]
 struct Cli {
+    #[command(flatten)]
+    logging: Logging,
     #[command(subcommand)]
     command: Command,
+}
+
+const EXIT_CODES: &str = "Exit: 0 success; 1 internal, or cannot listen; 2 usage or error findings; 3 the device \
+                          refused (ErrorID 224); 4 everything else (timeout, refused, malformed)";
+
+#[derive(Clone, Debug, Args)]
+struct Logging {
+    /// What is logged to stderr: error, warn, info, debug, trace or target=level,… [default: info for serve, else
+    /// error]
+    #[arg(long, global = true, value_name = "FILTER")]
+    log: Option<String>,
+    /// How it is logged. [default: text]
+    #[arg(long, global = true, value_enum)]
+    log_format: Option<LogFormat>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Serve the page and the interfaces; prints one line when it listens.
     Serve(serve::Serve),
+    /// Be a small EtherNet/IP device on TCP and UDP; prints one line when it listens.
+    Simulate(simulate::Simulate),
+    /// Send one message to a device from here; needs no relay.
+    Send(send::Send),
+    /// Run a block from a file from here; needs no relay.
+    Run(run::Run),
+    /// Check a block in a file: all findings, and the bytes that would be sent.
+    Check(check::Check),
 }
 
 /// The process, from its arguments to its exit code.
@@ -30,10 +63,31 @@ pub fn main() -> ExitCode {
         Ok(runtime) => runtime,
         Err(error) => return Exit::internal(&format!("cannot start: {error}")).report(),
     };
-    let exit = runtime.block_on(async {
-        match cli.command {
-            Command::Serve(serve) => serve.execute().await,
+    runtime.block_on(cli.execute()).report()
+}
+
+impl Cli {
+    async fn execute(self) -> Exit {
+        if let Command::Serve(serve) = self.command {
+            return serve.execute(self.logging).await;
         }
-    });
-    exit.report()
+        let log = self.logging.log.as_deref().unwrap_or("error");
+        if let Err(error) = telemetry::start(log, self.logging.log_format.unwrap_or_default()) {
+            return Exit::usage(&format!("the log filter {log:?} cannot be used: {error}"));
+        }
+        match self.command {
+            Command::Serve(serve) => serve.execute(self.logging).await,
+            Command::Simulate(simulate) => simulate.execute().await,
+            Command::Send(send) => send.execute().await,
+            Command::Run(run) => run.execute().await,
+            Command::Check(check) => check.execute(),
+        }
+    }
+}
+
+/// Prints a line on stdout. A reader that has gone away is no error of ours.
+fn say(line: &str) {
+    use std::io::Write;
+    let mut stdout = std::io::stdout();
+    let _ = writeln!(stdout, "{line}").and_then(|()| stdout.flush());
 }

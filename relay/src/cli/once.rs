@@ -1,0 +1,99 @@
+//! Runs one block from here, once or several times, with the runner that the relay uses.
+
+use std::sync::Arc;
+
+use cipdeck_shared::api::{BlockStatus, LastSuccess};
+use cipdeck_shared::config::{BlockId, MsgCipGeneric, write_hex};
+use cipdeck_shared::engine::{BlockView, Exchange};
+use cipdeck_shared::plan::MessagePlan;
+use clap::Args;
+
+use super::report::{self, Report};
+use super::{Exit, say};
+use crate::runner::{Ended, Observer, Refused, Runner};
+use crate::{shutdown, wall_clock};
+
+/// How often, and how it is printed.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Mode {
+    /// Run N times, one line each; goes on after failures and exits as the first failure does
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    repeat: Option<u64>,
+    /// For machines: block status, request, response and decoded values, one JSON object a line
+    #[arg(long)]
+    json: bool,
+}
+
+/// The only block there is.
+const BLOCK: BlockId = BlockId(1);
+
+/// Its only revision.
+const REVISION: u64 = 1;
+
+/// Runs what can be run and prints it.
+pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
+    let (plan, findings) = MessagePlan::parse(config);
+    report::findings(&findings);
+    let Some(plan) = plan else {
+        if mode.json {
+            say(&report::checked(None, &findings));
+        }
+        return Exit::FINDINGS;
+    };
+    let runner = Runner::start(Arc::new(Nobody));
+    runner.put(BLOCK, REVISION, Ok(plan));
+    let exit = tokio::select! {
+        exit = repeat(&runner, config, mode) => exit,
+        // What is under way is cancelled by stopping: nobody waits for its answer.
+        () = shutdown::requested() => Exit::interrupted(&"interrupted; what had been sent may have been carried out"),
+    };
+    runner.stop().await;
+    exit
+}
+
+async fn repeat(runner: &Runner, config: &MsgCipGeneric, mode: &Mode) -> Exit {
+    let mut exit = Exit::SUCCESS;
+    for number in 1..=mode.repeat.unwrap_or(1) {
+        // Whoever types the command has seen what it sends.
+        let ended = match runner.run(BLOCK, Some(REVISION)).await {
+            Ok(ended) => ended,
+            Err(refused) => return not_run(refused),
+        };
+        print(&ended, config, mode, number);
+        if exit == Exit::SUCCESS {
+            exit = Exit::message(&ended.status.status);
+        }
+    }
+    exit
+}
+
+fn not_run(refused: Refused) -> Exit {
+    Exit::internal(&format!("the message could not be started: {refused}"))
+}
+
+fn print(ended: &Ended, config: &MsgCipGeneric, mode: &Mode, number: u64) {
+    let report = Report::new(ended);
+    match (mode.json, mode.repeat) {
+        (true, _) => say(&report.json()),
+        (false, Some(_)) => say(&format!("{number:>4}  {}", report.line())),
+        (false, None) => say(&report.text(config)),
+    }
+    if mode.json && ended.status.status.error {
+        eprintln!("{}", report.line());
+    }
+}
+
+/// There is no viewer: the end of a run is its only news.
+struct Nobody;
+
+impl Observer for Nobody {
+    fn changed(&self, _: BlockId, _: &BlockView) {}
+
+    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange) -> BlockStatus {
+        let at = wall_clock::now();
+        let res_data = write_hex(&view.res_data);
+        let res_length = u16::try_from(view.res_data.len()).unwrap_or(u16::MAX);
+        let last = view.q.then(|| LastSuccess { res_data, res_length, at: at.clone() });
+        BlockStatus::new(block, view, Some(at), last)
+    }
+}

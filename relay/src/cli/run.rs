@@ -1,0 +1,39 @@
+//! `cipdeck run`.
+
+use std::path::{Path, PathBuf};
+
+use cipdeck_shared::config::MsgCipGeneric;
+use clap::Args;
+
+use super::Exit;
+use super::once::{Mode, execute};
+use crate::draft::Draft;
+
+/// A block from a file.
+#[derive(Debug, Args)]
+pub(super) struct Run {
+    /// A block as JSON, as the page copies it
+    #[arg(value_name = "BLOCK.json")]
+    file: PathBuf,
+    #[command(flatten)]
+    mode: Mode,
+}
+
+impl Run {
+    /// Runs and prints.
+    pub(super) async fn execute(self) -> Exit {
+        match read(&self.file) {
+            Ok(config) => execute(&config, &self.mode).await,
+            Err(exit) => exit,
+        }
+    }
+}
+
+/// Reads a block; its id and revision do not matter here.
+pub(super) fn read(file: &Path) -> Result<MsgCipGeneric, Exit> {
+    let name = file.display();
+    let text = std::fs::read(file).map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
+    let draft: Draft = serde_json::from_slice(&text)
+        .map_err(|error| Exit::usage(&format!("{name} is not a block: {error}")))?;
+    Ok(draft.config)
+}

@@ -1,0 +1,95 @@
+//! From a target to an open stream.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use cipdeck_shared::config::{Endpoint, Host};
+use cipdeck_shared::engine::ConnectError;
+use cipdeck_shared::sim::Device;
+use tokio::io::DuplexStream;
+use tokio::net::TcpStream;
+
+use super::clock::Clock;
+use crate::simulate;
+
+/// Bytes between the engine and the built-in device.
+const PIPE: usize = 64 * 1024;
+
+/// Opens a TCP connection. How long that may take is the engine's business: it gives up by dropping this future.
+pub(super) async fn open(endpoint: &Endpoint) -> Result<TcpStream, (ConnectError, String)> {
+    let addresses = resolve(endpoint).await?;
+    let mut last = (ConnectError::Unresolved, format!("{} has no address", endpoint.host));
+    for address in addresses {
+        match TcpStream::connect(address).await {
+            Ok(stream) => {
+                // Without it a request may wait for the acknowledgement of the one before.
+                if let Err(error) = stream.set_nodelay(true) {
+                    tracing::debug!(%error, target.address = %address, "cannot set TCP_NODELAY");
+                }
+                return Ok(stream);
+            }
+            Err(error) => last = (reason(&error), format!("{address}: {error}")),
+        }
+    }
+    Err(last)
+}
+
+/// A connection to the device that is part of the relay.
+pub(super) fn built_in(device: Arc<Mutex<Device>>, clock: Clock) -> DuplexStream {
+    let (ours, theirs) = tokio::io::duplex(PIPE);
+    tokio::spawn(async move {
+        let _ = simulate::answer_stream(theirs, &device, clock).await;
+    });
+    ours
+}
+
+/// A device of the relay's own.
+pub(super) fn built_in_device() -> Arc<Mutex<Device>> {
+    Arc::new(Mutex::new(Device::default()))
+}
+
+async fn resolve(endpoint: &Endpoint) -> Result<Vec<SocketAddr>, (ConnectError, String)> {
+    match &endpoint.host {
+        Host::Ip(ip) => Ok(vec![SocketAddr::new(Ipv4Addr::from(*ip).into(), endpoint.port)]),
+        Host::Name(name) => match tokio::net::lookup_host((name.as_str(), endpoint.port)).await {
+            Ok(addresses) => Ok(addresses.collect()),
+            Err(error) => Err((ConnectError::Unresolved, format!("{name}: {error}"))),
+        },
+    }
+}
+
+fn reason(error: &io::Error) -> ConnectError {
+    match error.kind() {
+        io::ErrorKind::ConnectionRefused => ConnectError::Refused,
+        _ => ConnectError::Unreachable,
+    }
+}
+
+/// A panic while somebody held the device leaves a usable device behind: its state is plain values.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_port_without_a_listener_refuses() {
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let port = listener.local_addr().unwrap().port();
+        drop(listener);
+        let (error, detail) = open(&Endpoint { host: Host::Ip([127, 0, 0, 1]), port }).await.unwrap_err();
+        assert_eq!(error, ConnectError::Refused);
+        assert!(detail.contains("127.0.0.1"), "{detail}");
+    }
+
+    #[tokio::test]
+    async fn an_unknown_name_is_unresolved() {
+        let name = Host::Name("no-such-host.invalid".to_owned());
+        let (error, detail) = open(&Endpoint { host: name, port: 44818 }).await.unwrap_err();
+        assert_eq!(error, ConnectError::Unresolved);
+        assert!(detail.contains("no-such-host.invalid"), "{detail}");
+    }
+}

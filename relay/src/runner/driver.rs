@@ -1,0 +1,110 @@
+//! The one function that reads and writes a PLC's socket.
+
+use std::io;
+
+use cipdeck_shared::engine::LinkId;
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::sync::Notify;
+
+/// What the driver moves bytes for.
+pub(super) trait Machine {
+    /// Appends what is to be written now.
+    fn poll_transmit(&self, link: LinkId, out: &mut Vec<u8>) -> bool;
+    /// Takes what was read.
+    fn handle_input(&self, link: LinkId, bytes: &[u8]);
+}
+
+/// Bytes of one read. A reply without fragmentation fits.
+const READ_SIZE: usize = 4 * 1024;
+
+/// Moves bytes until the other side closes. `wake` says that there is something to write.
+///
+/// Dropping this future drops the socket with it: a request that was cut in half can never be followed by another
+/// one. Time limits are the engine's, who ends this future when one has passed.
+pub(super) async fn drive<S>(mut io: S, link: LinkId, machine: &impl Machine, wake: &Notify) -> io::Result<()>
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let (mut out, mut input) = (Vec::new(), vec![0; READ_SIZE]);
+    loop {
+        while machine.poll_transmit(link, &mut out) {
+            tracing::trace!(link = link.0, bytes = ?out, "write");
+            io.write_all(&out).await?;
+            io.flush().await?;
+            out.clear();
+        }
+        tokio::select! {
+            read = io.read(&mut input) => match read? {
+                0 => return Ok(()),
+                length => {
+                    let bytes = input.get(..length).unwrap_or_default();
+                    tracing::trace!(link = link.0, ?bytes, "read");
+                    machine.handle_input(link, bytes);
+                }
+            },
+            () = wake.notified() => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// Answers `+1` to each byte.
+    #[derive(Debug, Default)]
+    struct Echo(Mutex<Vec<u8>>);
+
+    impl Machine for Echo {
+        fn poll_transmit(&self, _: LinkId, out: &mut Vec<u8>) -> bool {
+            out.append(&mut self.0.lock().unwrap());
+            !out.is_empty()
+        }
+
+        fn handle_input(&self, _: LinkId, bytes: &[u8]) {
+            self.0.lock().unwrap().extend(bytes.iter().map(|byte| byte + 1));
+        }
+    }
+
+    #[tokio::test]
+    async fn bytes_go_both_ways_through_a_pipe_of_one_byte_and_closing_ends_it() {
+        let (ours, mut theirs) = tokio::io::duplex(1);
+        let (echo, wake) = (Echo(Mutex::new(vec![1, 2, 3])), Notify::new());
+        let peer = async {
+            let mut first = [0; 3];
+            theirs.read_exact(&mut first).await.unwrap();
+            assert_eq!(first, [1, 2, 3]);
+            for byte in [10, 20] {
+                theirs.write_all(&[byte]).await.unwrap();
+                assert_eq!(theirs.read_u8().await.unwrap(), byte + 1);
+            }
+            // Something to say without having been asked.
+            echo.0.lock().unwrap().push(99);
+            wake.notify_one();
+            assert_eq!(theirs.read_u8().await.unwrap(), 99);
+            drop(theirs);
+        };
+        let (ended, ()) = tokio::join!(drive(ours, LinkId(1), &echo, &wake), peer);
+        ended.unwrap();
+    }
+
+    #[tokio::test]
+    async fn dropping_it_in_the_middle_of_a_write_closes_the_socket() {
+        let (ours, mut theirs) = tokio::io::duplex(2);
+        let (echo, wake) = (Echo(Mutex::new(vec![7; 100])), Notify::new());
+        {
+            let driving = drive(ours, LinkId(1), &echo, &wake);
+            tokio::pin!(driving);
+            let mut half = [0; 10];
+            tokio::select! {
+                _ = &mut driving => panic!("it ended by itself"),
+                read = theirs.read_exact(&mut half) => read.unwrap(),
+            };
+        }
+        let mut rest = Vec::new();
+        theirs.read_to_end(&mut rest).await.unwrap();
+        assert!(rest.len() < 90, "nothing is written after the drop");
+    }
+}

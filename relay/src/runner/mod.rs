@@ -1,0 +1,276 @@
+//! Runs blocks: one [`Engine`] behind one lock, a task per connection, and a timer.
+//!
+//! The lock is held for short, synchronous sections only. After each call into the engine its events are carried out
+//! under the same lock, so that everybody sees them in the order in which they happened.
+
+mod clock;
+mod connect;
+mod driver;
+mod link;
+mod timer;
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use cipdeck_shared::api::BlockStatus;
+use cipdeck_shared::config::{BlockId, Target};
+use cipdeck_shared::engine::{BlockView, CommandError, Engine, Event, Exchange, Instant, LinkId, Wants};
+use cipdeck_shared::plan::{Finding, MessagePlan};
+use cipdeck_shared::sim::Device;
+use tokio::runtime::Handle;
+use tokio::sync::{oneshot, watch};
+use tokio_util::sync::CancellationToken;
+use tokio_util::task::TaskTracker;
+
+pub(crate) use self::clock::Clock;
+pub(crate) use self::connect::lock;
+use self::link::Socket;
+use crate::permit::{self, Denied, Grants};
+
+/// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
+pub(crate) trait Observer: Send + Sync + 'static {
+    /// A block looks different; `view.edges` are the new edges only.
+    fn changed(&self, block: BlockId, view: &BlockView);
+    /// A message has ended. Returns the status that its run is answered with.
+    fn finished(&self, block: BlockId, view: &BlockView, exchange: &Exchange) -> BlockStatus;
+}
+
+/// How a run ended: with DN or ER.
+#[derive(Clone, Debug)]
+pub(crate) struct Ended {
+    /// The block at that moment: its IN is still TRUE.
+    pub(crate) status: BlockStatus,
+    /// What went over the wire.
+    pub(crate) exchange: Exchange,
+}
+
+/// Why a command was not carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Refused {
+    /// No such block.
+    #[error("there is no such block")]
+    UnknownBlock,
+    /// A message is under way, or IN is TRUE.
+    #[error("the block is busy or its IN is TRUE")]
+    Busy,
+    /// It may write and has not been confirmed.
+    #[error("{0}")]
+    NotPermitted(Denied),
+    /// The relay is stopping, or the block was deleted while it ran.
+    #[error("the relay is stopping, or the block has been deleted")]
+    Unavailable,
+}
+
+/// Handle to everything that runs. Clones share it.
+#[derive(Clone)]
+pub(crate) struct Runner(Arc<Inner>);
+
+/// The gate in front of every write to the wire.
+type Gate = fn(&Grants, BlockId, u64) -> Result<(), Denied>;
+
+struct Inner {
+    state: Mutex<State>,
+    observer: Arc<dyn Observer>,
+    gate: Gate,
+    clock: Clock,
+    device: Arc<Mutex<Device>>,
+    /// When the engine wants to be called.
+    wake: watch::Sender<Option<Instant>>,
+    stop: CancellationToken,
+    tasks: TaskTracker,
+    runtime: Handle,
+}
+
+#[derive(Default)]
+struct State {
+    engine: Engine,
+    grants: Grants,
+    sockets: BTreeMap<LinkId, Socket>,
+    runs: HashMap<(BlockId, u64), oneshot::Sender<Ended>>,
+    stopping: bool,
+}
+
+/// How long sessions have for their farewell.
+const FAREWELL: Duration = Duration::from_secs(1);
+
+impl Runner {
+    /// Starts without blocks.
+    pub(crate) fn start(observer: Arc<dyn Observer>) -> Self {
+        Self::with_gate(observer, permit::permit)
+    }
+
+    fn with_gate(observer: Arc<dyn Observer>, gate: Gate) -> Self {
+        let inner = Arc::new(Inner {
+            state: Mutex::default(),
+            observer,
+            gate,
+            clock: Clock::start(),
+            device: connect::built_in_device(),
+            wake: watch::Sender::new(None),
+            stop: CancellationToken::new(),
+            tasks: TaskTracker::new(),
+            runtime: Handle::current(),
+        });
+        inner.tasks.spawn_on(timer::run(Arc::clone(&inner)), &inner.runtime);
+        Self(inner)
+    }
+
+    /// Adds a block, or changes it from its next trigger on.
+    pub(crate) fn put(&self, block: BlockId, revision: u64, plan: Result<MessagePlan, Vec<Finding>>) {
+        self.0.with(|state, now| {
+            let busy = state.engine.is_busy(block);
+            state.grants.put(block, revision, plan.as_ref().ok().map(MessagePlan::access), busy);
+            state.engine.put(block, revision, plan, now);
+        });
+    }
+
+    /// Cancels a block and forgets it.
+    pub(crate) fn remove(&self, block: BlockId) {
+        self.0.with(|state, now| {
+            state.engine.remove(block, now);
+            state.grants.remove(block);
+        });
+    }
+
+    /// One message, whatever `TriggerType`. The message goes on when nobody waits for its end any more.
+    pub(crate) async fn run(&self, block: BlockId, confirm: Option<u64>) -> Result<Ended, Refused> {
+        let (sender, ended) = oneshot::channel();
+        self.0.command(|state, now| {
+            state.permit(block, confirm)?;
+            let shot = state.engine.run(block, now).map_err(Refused::from)?;
+            state.runs.insert((block, shot), sender);
+            Ok(())
+        })?;
+        ended.await.map_err(|_| Refused::Unavailable)
+    }
+
+    /// Sets IN.
+    pub(crate) fn set_in(&self, block: BlockId, input: bool, confirm: Option<u64>) -> Result<(), Refused> {
+        self.0.command(|state, now| {
+            if input {
+                state.permit(block, confirm)?;
+            }
+            state.engine.set_in(block, input, now).map_err(Refused::from)
+        })
+    }
+
+    /// Cancels what is under way; nothing when idle.
+    pub(crate) fn cancel(&self, block: BlockId) -> Result<(), Refused> {
+        self.0.command(|state, now| state.engine.cancel(block, now).map_err(Refused::from))
+    }
+
+    /// How a block looks, with all edges of its last message.
+    pub(crate) fn view(&self, block: BlockId) -> Option<BlockView> {
+        lock(&self.0.state).engine.view(block)
+    }
+
+    /// Cancels everything, says farewell on every session, and ends all tasks.
+    pub(crate) async fn stop(&self) {
+        self.0.with(|state, now| {
+            state.stopping = true;
+            state.engine.stop(now);
+        });
+        if tokio::time::timeout(FAREWELL, self.0.quiet()).await.is_err() {
+            tracing::warn!("some targets did not close their session in time");
+        }
+        self.0.stop.cancel();
+        self.0.tasks.close();
+        self.0.tasks.wait().await;
+    }
+}
+
+impl Inner {
+    /// Ready when no connection is left.
+    async fn quiet(&self) {
+        // Every call into the engine is followed by a change of `wake`. It is not looked at inside the watch's own
+        // lock, which is taken after the state's elsewhere.
+        let mut wake = self.wake.subscribe();
+        while !lock(&self.state).engine.is_quiet() && wake.changed().await.is_ok() {}
+    }
+
+    /// A command of a person: refused while stopping.
+    fn command<T>(
+        self: &Arc<Self>,
+        call: impl FnOnce(&mut State, Instant) -> Result<T, Refused>,
+    ) -> Result<T, Refused> {
+        self.with(|state, now| if state.stopping { Err(Refused::Unavailable) } else { call(state, now) })
+    }
+
+    /// Calls the engine and carries out what it says.
+    fn with<T>(self: &Arc<Self>, call: impl FnOnce(&mut State, Instant) -> T) -> T {
+        let mut state = lock(&self.state);
+        let now = self.clock.now();
+        let value = call(&mut state, now);
+        while let Some(event) = state.engine.poll_event() {
+            self.carry_out(event, &mut state, now);
+        }
+        self.wake.send_replace(state.engine.poll_timeout());
+        value
+    }
+
+    fn carry_out(self: &Arc<Self>, event: Event, state: &mut State, now: Instant) {
+        match event {
+            Event::Connect { link, target } => self.connect(link, target, state),
+            Event::Disconnect { link } => {
+                // Dropping the last handle tells the task, which drops the socket.
+                state.sockets.remove(&link);
+            }
+            Event::Transmit { link } => {
+                if let Some(socket) = state.sockets.get(&link) {
+                    socket.wake();
+                }
+            }
+            Event::Wants(wants) => self.ask(&wants, state, now),
+            Event::Changed { block, view } => self.observer.changed(block, &view),
+            Event::Finished { block, shot, view, exchange } => {
+                let status = self.observer.finished(block, &view, &exchange);
+                if let Some(run) = state.runs.remove(&(block, shot)) {
+                    // Nobody may wait any more.
+                    let _ = run.send(Ended { status, exchange: *exchange });
+                }
+            }
+        }
+    }
+
+    fn connect(self: &Arc<Self>, link: LinkId, target: Target, state: &mut State) {
+        let (socket, task) = link::open(link, target, Arc::clone(self));
+        state.sockets.insert(link, socket);
+        self.tasks.spawn_on(task, &self.runtime);
+    }
+
+    fn ask(&self, wants: &Wants, state: &mut State, now: Instant) {
+        let verdict = (self.gate)(&state.grants, wants.block, wants.revision);
+        if let Err(denied) = verdict {
+            tracing::warn!(block = %wants.block, shot = wants.shot, revision = wants.revision, %denied, "not sent");
+        }
+        state.engine.permit(wants, verdict.is_ok(), now);
+    }
+}
+
+impl State {
+    fn permit(&mut self, block: BlockId, confirm: Option<u64>) -> Result<(), Refused> {
+        self.grants.command(block, confirm).map_err(|denied| match denied {
+            Denied::Unknown => Refused::UnknownBlock,
+            denied => Refused::NotPermitted(denied),
+        })
+    }
+}
+
+impl From<CommandError> for Refused {
+    fn from(error: CommandError) -> Self {
+        match error {
+            CommandError::UnknownBlock => Self::UnknownBlock,
+            CommandError::Busy => Self::Busy,
+        }
+    }
+}
+
+impl std::fmt::Debug for Runner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Runner").finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,0 @@
-//! Integration tests of the relay and the command line against real sockets. One binary, because each would link
-//! the whole relay again.
-
-mod peers;
