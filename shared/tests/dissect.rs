@@ -1,6 +1,5 @@
 //! What the byte view says about bytes.
-
-#![expect(clippy::expect_used, reason = "a test may fail")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, reason = "a test may fail")]
 
 mod common;
 
@@ -62,6 +61,10 @@ fn a_reply_to_a_known_attribute_has_its_type() {
     assert_covered(&node, reply.len());
     assert_eq!(text_of(&node, "general status"), Some("0x00 Success. Request carried out."));
     assert_eq!(text_of(&node, "product name"), Some("SHORT_STRING OpENer PC"));
+    let request = common::message("opener.identity_all_request");
+    let all = dissect::reply(&common::message("opener.identity_all_reply"), Some(&request));
+    assert_eq!(text_of(&all, "vendor id"), Some("UINT 1 Rockwell Automation / Allen-Bradley"));
+    assert_eq!(text_of(&all, "device type"), Some("UINT 12 Communications Adapter"));
     let unasked = dissect::reply(&reply, None);
     assert_eq!(text_of(&unasked, "product name"), None);
     assert!(text_of(&unasked, "type unknown").unwrap().starts_with("guess: "), "{unasked}");

@@ -9,7 +9,7 @@ use crate::wire::{GeneralStatus, ServiceCode};
 
 use super::path;
 use super::tree::{Node, Tree};
-use super::value::{About, layout_of_reply, layout_of_request, values};
+use super::value::{About, Decoded, layout_of_reply, layout_of_request, values};
 use super::words::coded;
 
 /// A message router request: service, path, data.
@@ -85,7 +85,7 @@ fn data(tree: &mut Tree<'_>, layout: Option<&'static [Field]>) -> Option<()> {
         let mut leaves: Vec<Node> = Vec::new();
         for value in values(layout, bytes) {
             let (from, to) = (at + value.from, at + value.to);
-            let text = format!("{} {}", value.type_name, value.text);
+            let text = format!("{} {}{}", value.type_name, value.text, meaning(&value));
             match leaves.last_mut() {
                 // Alternatives of the same guess.
                 Some(last) if last.from == from => {
@@ -101,4 +101,15 @@ fn data(tree: &mut Tree<'_>, layout: Option<&'static [Field]>) -> Option<()> {
         tree.push_rest(leaves);
         Some(())
     })
+}
+
+/// The name behind a number that the specification's owner gives out, with a space before it.
+fn meaning(value: &Decoded) -> String {
+    let number = value.text.parse().ok();
+    let entry = match value.name.as_ref() {
+        "vendor id" => number.and_then(table::vendor),
+        "device type" => number.and_then(table::device_type),
+        _ => None,
+    };
+    entry.map_or_else(String::new, |entry| format!(" {}", entry.name))
 }

@@ -1,4 +1,5 @@
 //! Frames recorded from other implementations. Each file says where its frames are from.
+#![allow(dead_code, reason = "each test is a crate of its own and takes what it needs")]
 #![expect(clippy::expect_used, reason = "a broken golden file is a bug in the test")]
 
 use cipdeck_shared::wire::{Encapsulation, SendRrData};

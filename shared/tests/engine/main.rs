@@ -6,3 +6,6 @@
 mod any;
 mod owner;
 mod promises;
+
+#[cfg(target_arch = "wasm32")]
+wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_browser);

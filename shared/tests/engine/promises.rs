@@ -6,6 +6,9 @@ use cipdeck_shared::wire::{
     Command, Encapsulation, EncapsulationStatus, Header, SenderContext, SessionHandle,
 };
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use crate::owner::{Owner, encapsulation};
 
 const A: BlockId = BlockId(1);

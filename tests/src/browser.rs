@@ -1,0 +1,264 @@
+//! Journeys through the page in headless Chromium, over WebDriver. A journey finds things as a person does: by the
+//! words on them.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serde_json::Value;
+use tempfile::TempDir;
+use thirtyfour::common::capabilities::firefox::LoggingPrefsLogLevel;
+use thirtyfour::prelude::*;
+use thirtyfour::{ChromeCapabilities, Key};
+use tokio::sync::{Semaphore, SemaphorePermit};
+
+use crate::process::Process;
+use crate::wait::eventually;
+use crate::{PATIENCE, tools};
+
+/// One browser journey at a time: two would only slow each other down.
+static TURN: Semaphore = Semaphore::const_new(1);
+
+/// A journey: one chromedriver, any number of browsers, numbered screenshots.
+#[derive(Debug)]
+pub struct Journey {
+    name: &'static str,
+    folder: PathBuf,
+    server: String,
+    chromedriver: Process,
+    _turn: SemaphorePermit<'static>,
+}
+
+impl Journey {
+    /// Waits for its turn and starts a chromedriver. Screenshots go to a folder of the journey's name.
+    pub async fn start(name: &'static str) -> Self {
+        let turn = TURN.acquire().await.expect("never closed");
+        let folder = tools::screenshots().join(name);
+        let _ = std::fs::remove_dir_all(&folder); // those of an earlier run would mislead
+        std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        let chromedriver = Process::start(&tools::chromedriver(), ["--port=0"]);
+        let port = chromedriver.line("chromedriver prints its port", PATIENCE, port).await;
+        Self { name, folder, server: format!("http://127.0.0.1:{port}"), chromedriver, _turn: turn }
+    }
+
+    /// Opens a browser with a profile of its own at an address.
+    pub async fn open(&self, who: &'static str, url: &str) -> Browser {
+        let profile = TempDir::new().expect("a folder for the browser's profile");
+        let driver = WebDriver::new(self.server.as_str(), capabilities(&profile)).await;
+        let driver = driver.unwrap_or_else(|error| {
+            panic!("Chromium does not start: {error}\n{}", self.chromedriver.output().join("\n"))
+        });
+        let browser = Browser {
+            journey: self.name,
+            who,
+            folder: self.folder.clone(),
+            driver: Some(driver),
+            shots: 0,
+            clicks: 0,
+            _profile: profile,
+        };
+        browser.driver().goto(url).await.unwrap_or_else(|error| panic!("{url}: {error}"));
+        browser
+    }
+}
+
+/// One browser window.
+#[derive(Debug)]
+pub struct Browser {
+    journey: &'static str,
+    who: &'static str,
+    folder: PathBuf,
+    driver: Option<WebDriver>,
+    shots: usize,
+    /// How often the user has clicked.
+    pub clicks: usize,
+    _profile: TempDir,
+}
+
+impl Browser {
+    /// Clicks the button, link, tab or switch with this name, once it can be clicked.
+    pub async fn click(&mut self, name: &str) {
+        self.click_at(&control(name), name).await;
+    }
+
+    /// Clicks what an XPath finds, once it can be clicked.
+    pub async fn click_at(&mut self, xpath: &str, name: &str) {
+        self.until(&format!("`{name}` can be clicked"), PATIENCE, async |driver| {
+            let element = shown(driver, xpath).await?;
+            if !element.is_enabled().await.ok()? {
+                return None;
+            }
+            element.click().await.ok()
+        })
+        .await;
+        self.clicks += 1;
+    }
+
+    /// Replaces the text of the field with this label.
+    pub async fn fill(&self, label: &str, text: &str) {
+        let xpath = field(label);
+        self.until(&format!("the field `{label}`"), PATIENCE, async |driver| {
+            let element = shown(driver, &xpath).await?;
+            element.send_keys(Key::Control + "a").await.ok()?;
+            element.send_keys(text).await.ok()
+        })
+        .await;
+    }
+
+    /// Waits until the page shows this text.
+    pub async fn see(&self, text: &str, limit: Duration) {
+        self.until(&format!("the page shows `{text}`"), limit, async |driver| {
+            text_of(driver).await.filter(|page| page.contains(text))
+        })
+        .await;
+    }
+
+    /// Waits until an XPath finds something that is displayed; its text.
+    pub async fn find(&self, what: &str, xpath: &str, limit: Duration) -> String {
+        self.until(what, limit, async |driver| shown(driver, xpath).await?.text().await.ok()).await
+    }
+
+    /// Whether the control with this name can be used.
+    pub async fn can_click(&self, name: &str) -> bool {
+        let element = shown(self.driver(), &control(name)).await;
+        let Some(element) = element else { return false };
+        element.is_enabled().await.unwrap_or(false)
+    }
+
+    /// Everything that the page shows.
+    pub async fn text(&self) -> String {
+        text_of(self.driver()).await.unwrap_or_default()
+    }
+
+    /// What a script returns.
+    pub async fn script(&self, script: &str) -> Value {
+        let result = self.driver().execute(script, Vec::new()).await;
+        result.unwrap_or_else(|error| panic!("{script}: {error}")).json().clone()
+    }
+
+    /// What an asynchronous script passes to its callback, its last argument.
+    pub async fn script_async(&self, script: &str) -> Value {
+        let result = self.driver().execute_async(script, Vec::new()).await;
+        result.unwrap_or_else(|error| panic!("{script}: {error}")).json().clone()
+    }
+
+    /// Asks again and again until `probe` gives a value; keeps a screenshot and fails when `limit` has passed.
+    pub async fn until<T>(
+        &self,
+        what: &str,
+        limit: Duration,
+        mut probe: impl AsyncFnMut(&WebDriver) -> Option<T>,
+    ) -> T {
+        let deadline = tokio::time::Instant::now() + limit;
+        let probed = eventually(what, limit * 2, async || match probe(self.driver()).await {
+            Some(value) => Some(Some(value)),
+            None => (tokio::time::Instant::now() >= deadline).then_some(None),
+        });
+        match probed.await {
+            Some(value) => value,
+            None => self.fail(&format!("not within {limit:?}: {what}")).await,
+        }
+    }
+
+    /// Keeps a screenshot of this stage of the journey.
+    pub async fn shot(&mut self, stage: &str) {
+        self.shots += 1;
+        let name = format!("{:02}-{}-{stage}.png", self.shots, self.who);
+        self.driver().screenshot(&self.folder.join(name)).await.expect("a screenshot");
+    }
+
+    /// Ends the browser; fails when the page has logged an error.
+    pub async fn close(mut self) {
+        let log = self.driver().browser_log().await.unwrap_or_default();
+        let errors: Vec<_> = log.iter().filter(|entry| entry.level == "SEVERE").collect();
+        let driver = self.driver.take().expect("open until here");
+        driver.quit().await.expect("Chromium ends");
+        assert!(errors.is_empty(), "the page has logged errors: {errors:#?}");
+    }
+
+    /// The WebDriver session.
+    pub fn driver(&self) -> &WebDriver {
+        self.driver.as_ref().expect("open until it is closed")
+    }
+
+    async fn fail(&self, what: &str) -> ! {
+        let mut report = format!("{} ({}): {what}", self.journey, self.who);
+        let shot = self.folder.join(format!("failed-{}.png", self.who));
+        if self.driver().screenshot(&shot).await.is_ok() {
+            let _ = write!(report, "\nscreenshot: {}", shot.display());
+        }
+        let _ = write!(report, "\nthe page shows:\n{}", self.text().await);
+        for entry in self.driver().browser_log().await.unwrap_or_default() {
+            let _ = write!(report, "\n{}: {}", entry.level, entry.message);
+        }
+        panic!("{report}");
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // After a failure: chromedriver's process group is ended, so there is nothing to ask of it.
+        if let Some(driver) = self.driver.take() {
+            let _ = driver.leak();
+        }
+    }
+}
+
+/// XPath of a control by its name: its text, or its label for those who listen.
+pub fn control(name: &str) -> String {
+    format!(
+        "//*[self::button or self::a or self::summary or @role='button' or @role='tab' or @role='switch']\
+         [normalize-space(.)='{name}' or @aria-label='{name}']"
+    )
+}
+
+/// XPath of a form field by its label.
+pub fn field(label: &str) -> String {
+    format!(
+        "//*[self::input or self::textarea or self::select]\
+         [@aria-label='{label}' or @id=//label[normalize-space(.)='{label}']/@for]"
+    )
+}
+
+async fn shown(driver: &WebDriver, xpath: &str) -> Option<WebElement> {
+    for element in driver.find_all(By::XPath(xpath)).await.ok()? {
+        if element.is_displayed().await.unwrap_or(false) {
+            return Some(element);
+        }
+    }
+    None
+}
+
+async fn text_of(driver: &WebDriver) -> Option<String> {
+    driver.find(By::Tag("body")).await.ok()?.text().await.ok()
+}
+
+fn capabilities(profile: &TempDir) -> ChromeCapabilities {
+    let mut capabilities = DesiredCapabilities::chrome();
+    let profile = format!("--user-data-dir={}", profile.path().display());
+    for argument in ARGUMENTS.into_iter().chain([profile.as_str()]) {
+        capabilities.add_arg(argument).expect("an argument is text");
+    }
+    capabilities.set_browser_log_level(LoggingPrefsLogLevel::All).expect("a level is text");
+    capabilities
+}
+
+/// Without a display, and without talking to anybody but the relay.
+const ARGUMENTS: [&str; 11] = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--hide-scrollbars",
+    "--window-size=1440,900",
+];
+
+/// From `ChromeDriver was started successfully on port 39731.`
+fn port(line: &str) -> Option<u16> {
+    line.strip_prefix("ChromeDriver was started successfully on port ")?.strip_suffix('.')?.parse().ok()
+}

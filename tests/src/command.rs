@@ -1,0 +1,80 @@
+//! The command line tool.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use serde_json::Value;
+use tokio::process::Command;
+
+use crate::process::Process;
+use crate::wait::within;
+use crate::{PATIENCE, tools};
+
+/// How a command ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Exit code.
+    pub code: i32,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Ended {
+    /// The one JSON document on standard output.
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:?}"))
+    }
+}
+
+/// Runs `cipdeck` with arguments to its end.
+pub async fn cipdeck(arguments: &[&str]) -> Ended {
+    let mut command = Command::new(tools::cipdeck());
+    command.args(arguments).stdin(Stdio::null()).kill_on_drop(true);
+    let output = within(&format!("cipdeck {} ends", arguments.join(" ")), PATIENCE, command.output()).await;
+    let output = output.expect("cipdeck starts");
+    Ended {
+        code: output.status.code().unwrap_or_else(|| panic!("an exit code: {output:?}")),
+        stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}
+
+/// A running `cipdeck serve` or `cipdeck simulate`, and where it listens.
+#[derive(Debug)]
+pub struct Service {
+    /// Address and port, from the line it prints.
+    pub address: String,
+    /// The process.
+    pub process: Process,
+}
+
+impl Service {
+    /// `cipdeck serve` with its data in `folder`; `listen` is `127.0.0.1:0` for a free port.
+    pub async fn serve(listen: &str, folder: &Path) -> Self {
+        let folder = folder.to_str().expect("a path in UTF-8");
+        Self::start(&["serve", "--listen", listen, "--data", folder]).await
+    }
+
+    /// `cipdeck simulate` with more arguments.
+    pub async fn simulate(listen: &str, more: &[&str]) -> Self {
+        Self::start(&[&["simulate", "--listen", listen], more].concat()).await
+    }
+
+    async fn start(arguments: &[&str]) -> Self {
+        let process = Process::start(&tools::cipdeck(), arguments);
+        let address = process.line("cipdeck prints its address", PATIENCE, listening_at).await;
+        Self { address, process }
+    }
+}
+
+/// The address in a line like `cipdeck listens on http://127.0.0.1:8818`.
+fn listening_at(line: &str) -> Option<String> {
+    if !line.starts_with("cipdeck ") {
+        return None; // the log has the address, too, before the relay answers
+    }
+    let rest = &line[line.find("127.0.0.1:")?..];
+    let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ':')).unwrap_or(rest.len());
+    Some(rest[..end].to_string())
+}

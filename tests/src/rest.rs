@@ -1,0 +1,92 @@
+//! A client of the REST interface, written from its document.
+
+use reqwest::{Client, Method, RequestBuilder};
+use serde_json::Value;
+
+/// A client of one relay.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    client: Client,
+    base: String,
+}
+
+/// An answer.
+#[derive(Clone, Debug)]
+pub struct Reply {
+    /// HTTP status.
+    pub status: u16,
+    /// Content type, or empty.
+    pub content_type: String,
+    /// JSON, or the text as a string.
+    pub body: Value,
+}
+
+impl Rest {
+    /// A client of the relay at an address like `127.0.0.1:8818`.
+    pub fn new(address: impl std::fmt::Display) -> Self {
+        Self { client: Client::new(), base: format!("http://{address}") }
+    }
+
+    /// GET of a path below `/api/v1/`.
+    pub async fn get(&self, path: &str) -> Reply {
+        Self::send(self.request(Method::GET, path)).await
+    }
+
+    /// POST of JSON.
+    pub async fn post(&self, path: &str, body: &Value) -> Reply {
+        Self::send(json(self.request(Method::POST, path), body)).await
+    }
+
+    /// PUT of JSON.
+    pub async fn put(&self, path: &str, body: &Value) -> Reply {
+        Self::send(json(self.request(Method::PUT, path), body)).await
+    }
+
+    /// DELETE.
+    pub async fn delete(&self, path: &str) -> Reply {
+        Self::send(self.request(Method::DELETE, path)).await
+    }
+
+    /// A request of one's own making.
+    pub fn request(&self, method: Method, path: &str) -> RequestBuilder {
+        self.client.request(method, format!("{}/api/v1/{path}", self.base))
+    }
+
+    /// Sends a request and reads its answer.
+    pub async fn send(request: RequestBuilder) -> Reply {
+        let response = request.send().await.expect("the relay answers");
+        let header = response.headers().get("content-type").and_then(|value| value.to_str().ok());
+        let content_type = header.unwrap_or_default().to_string();
+        let status = response.status().as_u16();
+        let text = response.text().await.expect("a body");
+        let body = serde_json::from_str(&text).unwrap_or(Value::String(text));
+        Reply { status, content_type, body }
+    }
+
+    /// Stores a block; its id.
+    pub async fn create(&self, block: &Value) -> String {
+        let reply = self.post("blocks", block).await;
+        assert!(matches!(reply.status, 200 | 201), "the block is stored: {reply:?}");
+        reply.body["id"].as_str().expect("an id").to_string()
+    }
+
+    /// Runs a block once; its status at DN or ER.
+    pub async fn run(&self, id: &str) -> Value {
+        let reply = self.post(&format!("blocks/{id}/run"), &serde_json::json!({})).await;
+        assert_eq!(reply.status, 200, "the block ran: {reply:?}");
+        reply.body
+    }
+}
+
+impl Reply {
+    /// Asserts that this is a problem with a status and a code.
+    pub fn is_problem(&self, status: u16, code: &str) {
+        assert_eq!((self.status, self.body["code"].as_str()), (status, Some(code)), "{self:?}");
+        assert_eq!(self.content_type, "application/problem+json", "{self:?}");
+        assert_eq!(self.body["status"], status, "{self:?}");
+    }
+}
+
+fn json(request: RequestBuilder, body: &Value) -> RequestBuilder {
+    request.header("content-type", "application/json").body(body.to_string())
+}

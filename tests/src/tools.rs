@@ -1,0 +1,52 @@
+//! Where the tools of the tests are. `cargo xtask test` finds or installs them and names them in the environment.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+/// The built `cipdeck`: `CIPDECK_BIN`, otherwise beside the tests in the target folder.
+pub fn cipdeck() -> PathBuf {
+    let beside = || {
+        let exe = env::current_exe().ok()?;
+        Some(exe.parent()?.parent()?.join("cipdeck"))
+    };
+    existing(named("CIPDECK_BIN").or_else(beside)).unwrap_or_else(|| {
+        panic!("cipdeck is not built: run `cargo build -p cipdeck-relay`, or set CIPDECK_BIN; {HINT}")
+    })
+}
+
+/// A Python that has the package cpppo: `CIPDECK_CPPPO_PYTHON`.
+pub fn cpppo_python() -> PathBuf {
+    existing(named("CIPDECK_CPPPO_PYTHON")).unwrap_or_else(|| {
+        panic!(
+            "cpppo is missing: run `python3 -m venv VENV && VENV/bin/pip install cpppo`, and set \
+             CIPDECK_CPPPO_PYTHON=VENV/bin/python; {HINT}"
+        )
+    })
+}
+
+/// The WebDriver of Chromium: `CIPDECK_CHROMEDRIVER`, otherwise `chromedriver` in the search path.
+pub fn chromedriver() -> PathBuf {
+    existing(named("CIPDECK_CHROMEDRIVER").or_else(|| search("chromedriver"))).unwrap_or_else(|| {
+        panic!("chromedriver is missing: run `apt-get install chromium chromium-driver`, or set CIPDECK_CHROMEDRIVER; {HINT}")
+    })
+}
+
+/// Where screenshots are kept: `CIPDECK_SCREENSHOTS`, otherwise `target/screenshots`.
+pub fn screenshots() -> PathBuf {
+    named("CIPDECK_SCREENSHOTS")
+        .unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/screenshots"))
+}
+
+const HINT: &str = "or run `cargo xtask test`, which does all of this";
+
+fn named(variable: &str) -> Option<PathBuf> {
+    env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+fn existing(path: Option<PathBuf>) -> Option<PathBuf> {
+    path.filter(|path| path.exists())
+}
+
+fn search(name: &str) -> Option<PathBuf> {
+    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| path.is_file())
+}
