@@ -4,7 +4,10 @@ use std::net::{Ipv4Addr, SocketAddr};
 
 use ciplink::adapter::{Adapter, AdapterConfig, AdapterIdentity, Assembly};
 
+use tokio::process::Command;
+
 use crate::process::Process;
+use crate::wait::within;
 use crate::{PATIENCE, fake_plc, tools};
 
 /// `ciplink`'s adapter in this process; it stops when it is dropped.
@@ -84,4 +87,13 @@ impl Cpppo {
 /// From `Network TCP Server address = ('127.0.0.1', 36149)`.
 fn tcp_port(line: &str) -> Option<u16> {
     line.strip_prefix("Network TCP Server address = ('127.0.0.1', ")?.strip_suffix(')')?.parse().ok()
+}
+
+/// What a client of the package `cpppo` prints: `python -m cpppo.server.enip.MODULE`.
+pub async fn cpppo_client(module: &str, arguments: &[&str]) -> String {
+    let mut command = Command::new(tools::cpppo_python());
+    command.args(["-m", &format!("cpppo.server.enip.{module}")]).args(arguments).kill_on_drop(true);
+    let output = within("cpppo's client ends", PATIENCE, command.output()).await.expect("Python starts");
+    let said = [output.stdout, output.stderr].concat();
+    String::from_utf8_lossy(&said).into_owned()
 }
