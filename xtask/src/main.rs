@@ -1,12 +1,17 @@
 //! `cargo xtask`: builds, runs, tests and checks cipdeck; the one entry for people and for CI.
 
 mod arch;
+mod check;
+mod dist;
 mod frontend;
 mod page;
 mod process;
 mod report;
+mod run;
 mod system;
+mod test;
 mod toolchain;
+mod tools;
 mod workspace;
 
 use std::process::ExitCode;
@@ -14,7 +19,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::{frontend::Profile, report::Report, toolchain::Preference};
+use crate::{frontend::Profile, report::Report, run::Addresses, toolchain::Preference};
 
 fn main() -> ExitCode {
     let mut report = Report::new();
@@ -40,6 +45,25 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Task {
+    /// Builds what is missing, starts a simulated device and the relay, and prints the page's address.
+    Run {
+        #[command(flatten)]
+        addresses: Addresses,
+        #[command(flatten)]
+        toolchain: Preference,
+    },
+    /// Installs what is missing and runs all tests.
+    Test {
+        /// Also what takes long.
+        #[arg(long)]
+        long: bool,
+        #[command(flatten)]
+        toolchain: Preference,
+    },
+    /// Format, lints, layers, documentation, licences.
+    Check(Preference),
+    /// Leaves the release binary at target/dist/cipdeck.
+    Dist(Preference),
     /// Finds or installs a compiler for wasm32-unknown-unknown.
     Toolchain(Preference),
     /// Builds the page into frontend/dist.
@@ -60,6 +84,10 @@ enum Task {
 impl Task {
     fn execute(self, report: &mut Report) -> Result<()> {
         match self {
+            Self::Run { addresses, toolchain } => run::all(report, toolchain, addresses)?,
+            Self::Test { long, toolchain } => test::all(report, toolchain, long)?,
+            Self::Check(preference) => check::all(report, preference)?,
+            Self::Dist(preference) => dist::build(report, preference)?,
             Self::Toolchain(preference) => {
                 let wasm = toolchain::find(report, preference)?;
                 report.say(&format!("wasm32 compiler: {wasm}"));

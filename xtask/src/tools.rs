@@ -1,0 +1,131 @@
+//! Programs of tests and checks: installed once into `target/tools`, never into the user's own folders.
+
+use std::{
+    env,
+    ffi::OsString,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result, bail};
+use toml::Table;
+
+use crate::{
+    process::{cargo, find, program, read, run},
+    report::Report,
+    system::{self, Consent},
+    workspace,
+};
+
+/// The browser and its driver, and the Python with cpppo.
+#[derive(Debug)]
+pub(crate) struct TestTools {
+    /// The WebDriver of Chromium or Chrome.
+    pub(crate) chromedriver: PathBuf,
+    /// A Python that can import cpppo.
+    pub(crate) cpppo_python: PathBuf,
+}
+
+/// Finds what the tests need, and installs what is missing.
+pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestTools> {
+    report.step("tool: wasm-bindgen's test runner", || {
+        // Without its lock file, which names a version that may be gone from the registry.
+        install("wasm-bindgen-cli", &locked_version("wasm-bindgen")?, &[])
+    })?;
+    report.step("tool: wasm-pack", || install("wasm-pack", WASM_PACK, &["--locked"]))?;
+    let chromedriver = report.step("tool: Chromium and its driver", || browser(consent))?;
+    let cpppo_python = report.step("tool: cpppo, a target that is not ours", || cpppo(consent))?;
+    Ok(TestTools { chromedriver, cpppo_python })
+}
+
+/// Installs cargo-deny if it is missing.
+pub(crate) fn cargo_deny() -> Result<()> {
+    install("cargo-deny", CARGO_DENY, &["--locked"])
+}
+
+/// The search path with `target/tools/bin` in front.
+pub(crate) fn path() -> Result<OsString> {
+    let present = env::var_os("PATH").unwrap_or_default();
+    let all = std::iter::once(folder().join("bin")).chain(env::split_paths(&present));
+    env::join_paths(all).context("a folder in PATH has a name that PATH cannot hold")
+}
+
+/// Installs a crate's programs in this version. Compiled without optimisation: they run for seconds, compile for minutes.
+fn install(name: &str, version: &str, flags: &[&str]) -> Result<()> {
+    let installed = read(cargo().args(["install", "--list", "--root"]).arg(folder()))?;
+    if installed.lines().any(|line| line == format!("{name} v{version}:")) {
+        println!("    {name} {version} is installed");
+        return Ok(());
+    }
+    run(cargo()
+        .args(["install", name, "--version", version, "--debug", "--root"])
+        .arg(folder())
+        .arg("--target-dir")
+        .arg(folder().join("build"))
+        .args(flags))
+}
+
+/// The driver on the PATH; on Debian it can be installed.
+fn browser(consent: Consent) -> Result<PathBuf> {
+    if let Some(named) = env::var_os("CIPDECK_CHROMEDRIVER") {
+        return Ok(named.into());
+    }
+    if find("chromedriver").is_none() && system::is_debian() {
+        system::install(consent, &["chromium", "chromium-driver"], "A browser for the tests")?;
+    }
+    let driver = find("chromedriver").context(
+        "chromedriver is not on the PATH: install Chrome or Chromium and the chromedriver of the same version \
+         (or name it in CIPDECK_CHROMEDRIVER)",
+    )?;
+    println!("    {}", read(program(&driver).arg("--version"))?);
+    Ok(driver)
+}
+
+/// A Python environment of our own that holds cpppo.
+fn cpppo(consent: Consent) -> Result<PathBuf> {
+    let venv = folder().join("cpppo-venv");
+    let python =
+        if cfg!(windows) { venv.join("Scripts").join("python.exe") } else { venv.join("bin").join("python") };
+    let version = || read(program(&python).args(["-c", "import cpppo; print(cpppo.version.__version__)"]));
+    if !version().is_ok_and(|version| version == CPPPO) {
+        if system::is_debian() {
+            system::install(consent, &["python3", "python3-venv"], "cpppo")?;
+        }
+        run(program(system_python()?).args(["-m", "venv", "--clear"]).arg(&venv))?;
+        run(program(&python)
+            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+            .arg(format!("cpppo=={CPPPO}")))?;
+    }
+    match version()? {
+        version if version == CPPPO => println!("    cpppo {version}"),
+        other => bail!("cpppo {other} was installed instead of {CPPPO}"),
+    }
+    Ok(python)
+}
+
+/// The system's Python where there is one: an environment made by it outlives the user's version managers.
+fn system_python() -> Result<PathBuf> {
+    let debian = Path::new("/usr/bin/python3");
+    if debian.is_file() {
+        return Ok(debian.to_owned());
+    }
+    find("python3").or_else(|| find("python")).context("Python 3 is not on the PATH; cpppo needs it")
+}
+
+/// The version of a crate in Cargo.lock.
+fn locked_version(name: &str) -> Result<String> {
+    let lock: Table = fs::read_to_string(workspace::root().join("Cargo.lock"))?.parse()?;
+    let packages = lock.get("package").and_then(toml::Value::as_array).into_iter().flatten();
+    let found =
+        packages.into_iter().find(|package| package.get("name").and_then(toml::Value::as_str) == Some(name));
+    let version = found.and_then(|package| package.get("version")?.as_str());
+    Ok(version.with_context(|| format!("Cargo.lock does not name {name}"))?.to_owned())
+}
+
+fn folder() -> PathBuf {
+    workspace::target().join("tools")
+}
+
+const WASM_PACK: &str = "0.15.1";
+const CARGO_DENY: &str = "0.20.2";
+const CPPPO: &str = "5.2.5";
