@@ -250,6 +250,8 @@ fn a_refusal_and_the_reply_of_another_service_have_no_types() {
     assert!(dissect::decode(&PRODUCT_NAME, &refusal).is_empty());
     let other = dissect::decode(&PRODUCT_NAME, b"\x8F\x00\x00\x00\x04CHP1");
     assert!(other.iter().all(|value| value.guess), "{other:?}");
+    let all = dissect::decode(&PRODUCT_NAME, b"\x81\x00\x00\x00\x01\x00");
+    assert!(all.iter().all(|value| value.guess), "{all:?}");
 }
 
 #[cfg(not(target_arch = "wasm32"))]

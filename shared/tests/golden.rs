@@ -102,6 +102,9 @@ fn devices_that_introduce_themselves_are_understood() {
         let mut out = Vec::new();
         identity.encode_reply(&mut out);
         assert_eq!(out, frame.data(), "{name}");
+        let item = packet.find(ItemType::ListIdentity).unwrap().data;
+        let without_state = ListIdentityItem::decode(&item[..item.len() - 1]).unwrap();
+        assert_eq!(without_state.state, 255, "{name}: some devices leave the state out");
     }
     let bytes = common::frame("opener.list_services_reply");
     let frame = Encapsulation::decode(&bytes).unwrap();

@@ -172,12 +172,15 @@ fn drive_parameters_take_values_of_their_own_type() {
 #[test]
 fn the_session_is_checked_as_the_specification_says() {
     let version_2 = hex!("02 00 00 00");
+    let with_options = hex!("01 00 01 00");
     let ok = RegisterSession::CURRENT.bytes();
     let mut device = Device::default();
     let (mut connection, session) = registered(&mut device);
     let mut cut = rr(session, 1, &PRODUCT_NAME);
     cut.truncate(cut.len() - 1);
     cut[2] -= 1;
+    let mut foreign_interface = rr(session, 1, &PRODUCT_NAME);
+    foreign_interface[24] = 1;
     let without_item = hex!("00 00 00 00 00 00 01 00 00 00 00 00");
     let rows = [
         (
@@ -194,6 +197,7 @@ fn the_session_is_checked_as_the_specification_says() {
             EncapsulationStatus::InvalidSessionHandle,
         ),
         ("item longer than the frame", cut, EncapsulationStatus::InvalidLength),
+        ("an interface that is not CIP", foreign_interface, EncapsulationStatus::IncorrectData),
         (
             "no message",
             frame(Command::SendRRData, session, 1, &without_item),
@@ -207,6 +211,7 @@ fn the_session_is_checked_as_the_specification_says() {
     }
     for (name, data, status) in [
         ("version 2", &version_2[..], EncapsulationStatus::UnsupportedProtocolVersion),
+        ("options", &with_options, EncapsulationStatus::UnsupportedProtocolVersion),
         ("cut", &version_2[..3], EncapsulationStatus::InvalidLength),
     ] {
         let mut fresh = SimConnection::new();
@@ -287,6 +292,19 @@ fn the_device_is_found_over_tcp_and_udp() {
     ] {
         assert_eq!(handle_datagram(&device, &request), None, "no answer without a session");
     }
+}
+
+#[test]
+fn frames_with_options_are_discarded() {
+    let mut device = Device::default();
+    let (mut connection, session) = registered(&mut device);
+    for mut request in [frame(Command::ListIdentity, 0, 0, &[]), rr(session, 1, &PRODUCT_NAME)] {
+        request[20] = 1;
+        connection.handle_input(&mut device, &request, at(0));
+        assert!(sent(&mut connection, at(0)).is_empty());
+        assert_eq!(handle_datagram(&device, &request), None);
+    }
+    assert!(!connection.is_closed());
 }
 
 #[test]
@@ -407,6 +425,17 @@ fn replies_that_nobody_fetches_do_not_pile_up_for_ever() {
     let out = sent(&mut connection, at(0));
     assert!((256 * 1024..257 * 1024).contains(&out.len()), "{} bytes", out.len());
     assert!(connection.is_closed());
+}
+
+#[test]
+fn a_long_conversation_goes_on() {
+    let mut device = Device::default();
+    let (mut connection, session) = registered(&mut device);
+    for round in 0..10_000 {
+        connection.handle_input(&mut device, &rr(session, round, &PRODUCT_NAME), at(round));
+        assert!(!sent(&mut connection, at(round)).is_empty(), "round {round}");
+    }
+    assert!(!connection.is_closed());
 }
 
 #[cfg(not(target_arch = "wasm32"))]
