@@ -7,7 +7,7 @@ use core::str::FromStr;
 
 use crate::wire::PortSegment;
 
-/// STRING[80].
+/// `STRING[80]`.
 pub const MAX_PATH: usize = 80;
 
 /// The controller's embedded Ethernet port.

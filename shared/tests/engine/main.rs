@@ -1,6 +1,7 @@
 //! The engine, driven as its owner drives it: virtual time, no sockets.
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail")]
 #![expect(clippy::std_instead_of_alloc, reason = "tests have std")]
+#![cfg_attr(target_arch = "wasm32", expect(clippy::indexing_slicing, reason = "a test may fail"))]
 
 #[cfg(not(target_arch = "wasm32"))]
 mod any;
