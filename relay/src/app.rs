@@ -4,7 +4,9 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use tokio_util::sync::CancellationToken;
+use tokio_util::task::TaskTracker;
 
+use crate::blocks::Blocks;
 use crate::http::AllowedHosts;
 
 /// The parts of the relay, shared by all requests.
@@ -12,14 +14,17 @@ use crate::http::AllowedHosts;
 pub(crate) struct App {
     /// Who may call.
     pub(crate) hosts: Arc<AllowedHosts>,
+    /// What it is all about.
+    pub(crate) blocks: Blocks,
     /// Ready when the relay stops.
-    #[expect(dead_code, reason = "viewers watch it")]
     pub(crate) stop: CancellationToken,
+    /// The connected viewers.
+    pub(crate) viewers: TaskTracker,
 }
 
 impl App {
     /// Puts the parts together.
-    pub(crate) fn new(address: SocketAddr, stop: CancellationToken) -> Self {
-        Self { hosts: Arc::new(AllowedHosts::new(address)), stop }
+    pub(crate) fn new(address: SocketAddr, blocks: Blocks, stop: CancellationToken) -> Self {
+        Self { hosts: Arc::new(AllowedHosts::new(address)), blocks, stop, viewers: TaskTracker::new() }
     }
 }

@@ -4,10 +4,14 @@ use std::net::SocketAddr;
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use cipdeck_shared::api::{Finding, Problem, ProblemCode};
+use cipdeck_shared::config::{Block, BlockId};
 
-/// Why a request was not carried out.
+use crate::runner::Refused;
+use crate::store::StoreError;
+
+/// Why a request or a command was not carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(dead_code, reason = "bodies are read once there are blocks")]
 pub(crate) enum ApiError {
     /// Not JSON, or not the JSON that is expected here.
     #[error("{0}")]
@@ -15,33 +19,97 @@ pub(crate) enum ApiError {
     /// Who asks may not, or a write that nobody has confirmed.
     #[error("{0}")]
     NotPermitted(String),
-    /// No such address.
+    /// No such address, no such block.
     #[error("{0}")]
     NotFound(String),
+    /// A message is under way, or IN is TRUE.
+    #[error("{0}")]
+    Busy(String),
+    /// Somebody else has changed the block.
+    #[error("block {} has revision {} by now: look at it and decide again", .0.id, .0.revision)]
+    Stale(Box<Block>),
     /// A body over its limit.
     #[error("the body is longer than {0} bytes")]
     TooLarge(usize),
+    /// The configuration has errors; nothing was stored.
+    #[error("the configuration has errors; nothing was stored")]
+    Findings(Vec<Finding>),
+    /// The relay is stopping, or the block was deleted while it ran.
+    #[error("{0}")]
+    Unavailable(String),
+    /// Our fault. The log has more.
+    #[error("the relay failed: {0}")]
+    Internal(String),
 }
 
 impl ApiError {
-    const fn kind(&self) -> (StatusCode, &'static str) {
+    /// There is no such block.
+    pub(crate) fn no_block(id: BlockId) -> Self {
+        Self::NotFound(format!("there is no block {id}"))
+    }
+
+    const fn kind(&self) -> (StatusCode, ProblemCode, &'static str) {
         match self {
-            Self::Unreadable(_) => (StatusCode::BAD_REQUEST, "unreadable"),
-            Self::NotPermitted(_) => (StatusCode::FORBIDDEN, "not_permitted"),
-            Self::NotFound(_) => (StatusCode::NOT_FOUND, "not_found"),
-            Self::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, "too_large"),
+            Self::Unreadable(_) => (StatusCode::BAD_REQUEST, ProblemCode::Unreadable, "Unreadable"),
+            Self::NotPermitted(_) => (StatusCode::FORBIDDEN, ProblemCode::NotPermitted, "Not permitted"),
+            Self::NotFound(_) => (StatusCode::NOT_FOUND, ProblemCode::NotFound, "Not found"),
+            Self::Busy(_) => (StatusCode::CONFLICT, ProblemCode::Busy, "Busy"),
+            Self::Stale(_) => (StatusCode::CONFLICT, ProblemCode::StaleRevision, "Changed by somebody else"),
+            Self::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, ProblemCode::TooLarge, "Too large"),
+            Self::Findings(_) => {
+                (StatusCode::UNPROCESSABLE_ENTITY, ProblemCode::Findings, "Errors in the configuration")
+            }
+            Self::Unavailable(_) => {
+                (StatusCode::SERVICE_UNAVAILABLE, ProblemCode::Unavailable, "Not available")
+            }
+            Self::Internal(_) => (StatusCode::INTERNAL_SERVER_ERROR, ProblemCode::Internal, "Internal error"),
         }
+    }
+}
+
+impl From<ApiError> for Problem {
+    fn from(error: ApiError) -> Self {
+        let (status, code, title) = error.kind();
+        let (detail, title, status) = (error.to_string(), title.to_owned(), status.as_u16());
+        let (findings, current) = match error {
+            ApiError::Findings(findings) => (Some(findings), None),
+            ApiError::Stale(block) => (None, Some(*block)),
+            _ => (None, None),
+        };
+        Self { title, status, code, detail, findings, current }
     }
 }
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let (status, code) = self.kind();
-        let body = serde_json::json!({
-            "title": code.replace('_', " "), "status": status.as_u16(), "code": code, "detail": self.to_string(),
-        });
+        let status = self.kind().0;
+        if status.is_server_error() {
+            tracing::error!(error = %self, "a request failed");
+        }
+        // A problem has string keys only, which is all that could fail.
+        let body = serde_json::to_string(&Problem::from(self)).unwrap_or_default();
         let content_type = HeaderValue::from_static("application/problem+json");
-        (status, [(header::CONTENT_TYPE, content_type)], body.to_string()).into_response()
+        (status, [(header::CONTENT_TYPE, content_type)], body).into_response()
+    }
+}
+
+impl From<Refused> for ApiError {
+    fn from(refused: Refused) -> Self {
+        match refused {
+            Refused::UnknownBlock => Self::NotFound(refused.to_string()),
+            Refused::Busy => Self::Busy(refused.to_string()),
+            Refused::NotPermitted(_) => Self::NotPermitted(refused.to_string()),
+            Refused::Unavailable => Self::Unavailable(refused.to_string()),
+        }
+    }
+}
+
+impl From<StoreError> for ApiError {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::Closed => Self::Unavailable(error.to_string()),
+            error => Self::Internal(error.to_string()),
+        }
     }
 }
 
@@ -59,6 +127,9 @@ pub enum RunError {
         "{0} is not a loopback address: without users and roles the relay listens on 127.0.0.1 or [::1] only"
     )]
     NotLoopback(SocketAddr),
+    /// The database cannot be used.
+    #[error("{0}")]
+    Store(String),
     /// The server failed.
     #[error("the server failed: {0}")]
     Serve(#[source] std::io::Error),

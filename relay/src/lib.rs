@@ -7,24 +7,34 @@ pub mod cli;
 pub mod settings;
 
 mod app;
+mod blocks;
 mod draft;
 mod error;
 mod http;
+mod hub;
 mod permit;
 mod runner;
 mod shutdown;
 mod simulate;
+mod store;
 mod telemetry;
 mod wall_clock;
+mod ws;
 
 use std::future::Future;
+use std::time::Duration;
 
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
 use self::app::App;
+use self::blocks::Blocks;
 pub use self::error::RunError;
 pub use self::settings::Settings;
+use self::store::Store;
+
+/// How long requests that are being answered have after everything else has ended.
+const LAST_ANSWERS: Duration = Duration::from_secs(3);
 
 /// Serves on a listener that is already bound, until `shutdown` is ready; then stops in order: viewers, running
 /// messages and their sessions, the store.
@@ -49,14 +59,37 @@ pub(crate) async fn serve(
     if !address.ip().is_loopback() {
         return Err(RunError::NotLoopback(address));
     }
+    let database = settings.database();
+    let no_store = |error| match &database {
+        Some(path) => RunError::Store(format!("{}: {error}", path.display())),
+        None => RunError::Store(format!("{error}")),
+    };
+    let store = Store::open(database.as_deref()).await.map_err(no_store)?;
+    let blocks = Blocks::open(store).await.map_err(no_store)?;
     tracing::info!(server.address = %address, data = ?settings.data, "listening");
+
     let stop = CancellationToken::new();
-    let app = App::new(address, stop.clone());
+    let app = App::new(address, blocks.clone(), stop.clone());
+    let viewers = app.viewers.clone();
     let server =
         axum::serve(listener, http::router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
-    let server = tokio::spawn(server.into_future());
+    let mut server = tokio::spawn(server.into_future());
     ready();
-    shutdown.await;
+    let ended = tokio::select! {
+        () = shutdown => None,
+        ended = &mut server => Some(ended),
+    };
     stop.cancel();
-    server.await.map_err(|_| RunError::Stopped)?.map_err(RunError::Serve)
+    viewers.close();
+    viewers.wait().await;
+    blocks.stop().await;
+    match ended {
+        Some(_) => Err(RunError::Stopped),
+        None => match tokio::time::timeout(LAST_ANSWERS, server).await {
+            Ok(Ok(result)) => result.map_err(RunError::Serve),
+            Ok(Err(_)) => Err(RunError::Stopped),
+            // Somebody holds a connection open; everything of value is safe.
+            Err(_) => Ok(()),
+        },
+    }
 }

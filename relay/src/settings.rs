@@ -81,7 +81,6 @@ impl Settings {
     }
 
     /// The database file.
-    #[expect(dead_code, reason = "read once there is a store")]
     pub(crate) fn database(&self) -> Option<PathBuf> {
         self.data.as_ref().map(|folder| folder.join(DATABASE))
     }

@@ -53,10 +53,11 @@ async fn listen_and_run(settings: Settings) -> Result<(), RunError> {
         // Before binding: not even for a moment is there an open port.
         return Err(RunError::NotLoopback(settings.listen));
     }
+    let shutdown = shutdown::requested();
     let listener =
         TcpListener::bind(settings.listen).await.map_err(|source| RunError::Bind(settings.listen, source))?;
     let address = listener.local_addr().map_err(RunError::Listen)?;
-    crate::serve(settings, listener, shutdown::requested(), || {
+    crate::serve(settings, listener, shutdown, || {
         // Whoever started the relay waits for this one line.
         say(&format!("cipdeck listens on http://{address}"));
     })

@@ -32,6 +32,7 @@ pub(super) struct Simulate {
 impl Simulate {
     /// Runs until the process is asked to stop.
     pub(super) async fn execute(self) -> Exit {
+        let shutdown = shutdown::requested();
         let (tcp, udp) = match bind(self.listen).await {
             Ok(sockets) => sockets,
             Err(error) => return Exit::internal(&format!("cannot listen on {}: {error}", self.listen)),
@@ -48,7 +49,7 @@ impl Simulate {
         tokio::select! {
             () = simulate::answer_tcp(tcp, Arc::clone(&device), Clock::start()) => {}
             () = simulate::answer_udp(udp, device) => {}
-            () = shutdown::requested() => {}
+            () = shutdown => {}
         }
         Exit::SUCCESS
     }

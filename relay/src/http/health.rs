@@ -1,9 +1,13 @@
 //! `GET /api/v1/health`.
 
 use axum::Json;
-use serde_json::{Value, json};
+use axum::extract::State;
+use cipdeck_shared::api::Health;
+
+use crate::app::App;
 
 /// The relay lives.
-pub(crate) async fn show() -> Json<Value> {
-    Json(json!({ "status": "ok", "version": env!("CARGO_PKG_VERSION"), "blocks": 0 }))
+pub(crate) async fn show(State(app): State<App>) -> Json<Health> {
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    Json(Health { status: "ok".to_owned(), version, blocks: app.blocks.hub().len() })
 }

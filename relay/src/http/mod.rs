@@ -1,17 +1,22 @@
 //! REST under `/api/v1`, and the page under everything else. docs/REST.md describes the interface.
 
 mod assets;
+mod blocks;
+mod commands;
+mod extract;
 mod guard;
 mod health;
 
 use axum::Router;
-use axum::http::{HeaderName, HeaderValue, Uri, header};
+use axum::extract::DefaultBodyLimit;
+use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware;
 use axum::response::Response;
-use axum::routing::get;
+use axum::routing::{get, post};
 
 use crate::app::App;
 use crate::error::ApiError;
+use crate::ws;
 
 pub(crate) use self::guard::AllowedHosts;
 
@@ -19,6 +24,15 @@ pub(crate) use self::guard::AllowedHosts;
 pub(crate) fn router(app: App) -> Router {
     let api = Router::new()
         .route("/health", get(health::show))
+        .route("/ws", get(ws::upgrade))
+        .route("/check", post(commands::check))
+        .route("/blocks", get(blocks::list).post(blocks::create))
+        .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
+        .route("/blocks/{id}/status", get(blocks::status))
+        .route("/blocks/{id}/exchange", get(blocks::exchange))
+        .route("/blocks/{id}/in", post(commands::set_in))
+        .route("/blocks/{id}/run", post(commands::run))
+        .route("/blocks/{id}/cancel", post(commands::cancel))
         .fallback(unknown)
         .method_not_allowed_fallback(unknown);
     Router::new()
@@ -26,13 +40,15 @@ pub(crate) fn router(app: App) -> Router {
         .route("/api", get(unknown))
         .route("/api/{*rest}", get(unknown))
         .fallback(assets::show)
+        // Bodies are bounded where they are read.
+        .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::check))
         .layer(middleware::map_response(secure))
         .with_state(app)
 }
 
-async fn unknown(uri: Uri) -> ApiError {
-    ApiError::NotFound(format!("nothing is at {}", uri.path()))
+async fn unknown(method: Method, uri: Uri) -> ApiError {
+    ApiError::NotFound(format!("nothing takes {method} at {}", uri.path()))
 }
 
 /// Nothing is loaded from elsewhere, nothing frames the page, no address leaks.
@@ -51,6 +67,9 @@ const SECURITY_HEADERS: [(HeaderName, &str); 5] = [
 async fn secure(mut response: Response) -> Response {
     for (name, value) in SECURITY_HEADERS {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    if response.headers().get(header::CACHE_CONTROL).is_none() {
+        response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     }
     response
 }

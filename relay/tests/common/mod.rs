@@ -37,29 +37,33 @@ impl Relay {
 
     /// One request with the usual headers.
     pub(crate) async fn ask(&self, method: &str, path: &str, body: &str) -> Reply {
-        self.ask_with(method, path, &[("Host", &self.address.to_string())], body).await
+        Self::ask_at(self.address, method, path, body).await
     }
 
-    /// One request with these headers.
-    pub(crate) async fn ask_with(
-        &self,
-        method: &str,
-        path: &str,
-        headers: &[(&str, &str)],
-        body: &str,
-    ) -> Reply {
-        let headers: String =
-            headers.iter().map(|(name, value)| [name, ": ", value, "\r\n"].concat()).collect();
-        let length = body.len();
-        let text = format!(
-            "{method} {path} HTTP/1.1\r\nConnection: close\r\nContent-Length: {length}\r\n{headers}\r\n{body}"
-        );
-        let mut socket = TcpStream::connect(self.address).await.unwrap();
-        socket.write_all(text.as_bytes()).await.unwrap();
-        let mut reply = Vec::new();
-        socket.read_to_end(&mut reply).await.unwrap();
-        Reply::read(&String::from_utf8(reply).unwrap())
+    /// One request to a relay at this address.
+    pub(crate) async fn ask_at(address: SocketAddr, method: &str, path: &str, body: &str) -> Reply {
+        request(address, method, path, &[("Host", &address.to_string())], body).await
     }
+}
+
+/// One request with these headers.
+pub(crate) async fn request(
+    address: SocketAddr,
+    method: &str,
+    path: &str,
+    headers: &[(&str, &str)],
+    body: &str,
+) -> Reply {
+    let headers: String = headers.iter().map(|(name, value)| [name, ": ", value, "\r\n"].concat()).collect();
+    let length = body.len();
+    let text = format!(
+        "{method} {path} HTTP/1.1\r\nConnection: close\r\nContent-Length: {length}\r\n{headers}\r\n{body}"
+    );
+    let mut socket = TcpStream::connect(address).await.unwrap();
+    socket.write_all(text.as_bytes()).await.unwrap();
+    let mut reply = Vec::new();
+    socket.read_to_end(&mut reply).await.unwrap();
+    Reply::read(&String::from_utf8(reply).unwrap())
 }
 
 /// What came back.

@@ -1,0 +1,213 @@
+//! Blocks as REST, WebSocket and start-up use them: stored first, then run, then told to viewers.
+
+use std::future::Future;
+use std::sync::Arc;
+
+use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, findings};
+use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
+use cipdeck_shared::engine::BlockView;
+use cipdeck_shared::plan::{Finding, MessagePlan};
+use tokio::sync::Mutex;
+
+use crate::draft::{Draft, normalised};
+use crate::error::ApiError;
+use crate::hub::Hub;
+use crate::runner::Runner;
+use crate::store::{Change, Store, StoreError};
+
+/// All blocks. Clones share them.
+#[derive(Clone, Debug)]
+pub(crate) struct Blocks(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    store: Store,
+    runner: Runner,
+    hub: Arc<Hub>,
+    /// Held from the store to the viewers, so that everybody sees changes in the order in which they were stored.
+    edit: Mutex<()>,
+}
+
+impl Blocks {
+    /// Loads what is stored. Every IN is FALSE, except where a read resumes.
+    pub(crate) async fn open(store: Store) -> Result<Self, StoreError> {
+        let hub = Arc::new(Hub::new());
+        let runner = Runner::start(Arc::clone(&hub) as Arc<_>);
+        let all = store.load().await?;
+        for stored in &all {
+            let Block { id, revision, config } = &stored.block;
+            hub.put(stored.block.clone());
+            runner.put(*id, *revision, plan(config));
+        }
+        for stored in all.iter().filter(|stored| stored.input && stored.block.config.resume) {
+            // Without a plan there is nothing to resume; a plan that resumes only reads.
+            if plan(&stored.block.config).is_ok_and(|plan| plan.resume())
+                && let Err(refused) = runner.set_in(stored.block.id, true, None)
+            {
+                tracing::warn!(block = %stored.block.id, %refused, "not resumed");
+            }
+        }
+        tracing::info!(blocks = all.len(), "loaded");
+        Ok(Self(Arc::new(Inner { store, runner, hub, edit: Mutex::new(()) })))
+    }
+
+    /// What viewers look at.
+    pub(crate) fn hub(&self) -> &Hub {
+        &self.0.hub
+    }
+
+    /// One block.
+    pub(crate) fn block(&self, id: BlockId) -> Result<Block, ApiError> {
+        self.0.hub.block(id).ok_or_else(|| ApiError::no_block(id))
+    }
+
+    /// How a block looks, with all edges of its last message.
+    pub(crate) fn status(&self, id: BlockId) -> Result<BlockStatus, ApiError> {
+        let view: BlockView = self.0.runner.view(id).ok_or_else(|| ApiError::no_block(id))?;
+        self.0.hub.status(id, &view).ok_or_else(|| ApiError::no_block(id))
+    }
+
+    /// The last exchanges, the newest last.
+    pub(crate) fn exchanges(&self, id: BlockId) -> Result<Vec<ExchangeView>, ApiError> {
+        self.0.hub.exchanges(id).ok_or_else(|| ApiError::no_block(id))
+    }
+
+    /// Stores a new block.
+    pub(crate) async fn create(&self, draft: Draft) -> Result<Block, ApiError> {
+        let (config, plan) = accepted(draft.config)?;
+        self.edit(|inner| async move {
+            let block = inner.store.insert(config).await?;
+            inner.hub.put(block.clone());
+            inner.runner.put(block.id, block.revision, Ok(plan));
+            tracing::info!(block = %block.id, name = block.config.name, "created");
+            Ok(block)
+        })
+        .await
+    }
+
+    /// Replaces a block; it acts at the next trigger.
+    pub(crate) async fn replace(&self, id: BlockId, draft: Draft) -> Result<Block, ApiError> {
+        let Draft { id: claimed, revision, config } = draft;
+        if claimed.is_some_and(|claimed| claimed != String::from(id)) {
+            return Err(ApiError::Unreadable(format!("the body is about another block than {id}")));
+        }
+        let revision = revision.ok_or_else(|| ApiError::Unreadable("\"revision\" is missing".to_owned()))?;
+        // Whether it exists, and in which revision, is told first: a stale draft need not be repaired.
+        let (config, plan) = match accepted(config) {
+            Ok(accepted) => accepted,
+            Err(refused) => return Err(self.stale(id, revision).unwrap_or(refused)),
+        };
+        self.edit(|inner| async move {
+            let block = done(id, inner.store.replace(id, revision, config).await?)?;
+            if block.config.resume {
+                let input = inner.runner.view(id).is_some_and(|view| view.input);
+                inner.store.set_input(id, input).await?;
+            }
+            inner.runner.put(id, block.revision, Ok(plan));
+            inner.hub.put(block.clone());
+            tracing::info!(block = %id, revision = block.revision, "changed");
+            Ok(block)
+        })
+        .await
+    }
+
+    /// Cancels and deletes a block.
+    pub(crate) async fn delete(&self, id: BlockId, revision: u64) -> Result<(), ApiError> {
+        self.edit(|inner| async move {
+            done(id, inner.store.delete(id, revision).await?)?;
+            inner.runner.remove(id);
+            inner.hub.remove(id);
+            tracing::info!(block = %id, "deleted");
+            Ok(())
+        })
+        .await
+    }
+
+    /// One message. The status at DN or ER.
+    pub(crate) async fn run(&self, id: BlockId, confirm: Option<u64>) -> Result<BlockStatus, ApiError> {
+        Ok(self.0.runner.run(id, confirm).await?.status)
+    }
+
+    /// Sets IN.
+    pub(crate) async fn set_in(
+        &self,
+        id: BlockId,
+        input: bool,
+        confirm: Option<u64>,
+    ) -> Result<BlockStatus, ApiError> {
+        let resumes = self.block(id)?.config.resume;
+        if resumes {
+            self.edit(|inner| async move {
+                inner.runner.set_in(id, input, confirm)?;
+                Ok(inner.store.set_input(id, input).await?)
+            })
+            .await?;
+        } else {
+            self.0.runner.set_in(id, input, confirm)?;
+        }
+        self.status(id)
+    }
+
+    /// Cancels what is under way.
+    pub(crate) fn cancel(&self, id: BlockId) -> Result<BlockStatus, ApiError> {
+        self.0.runner.cancel(id)?;
+        self.status(id)
+    }
+
+    /// Ends everything that runs, then closes the database.
+    pub(crate) async fn stop(&self) {
+        self.0.runner.stop().await;
+        self.0.store.close().await;
+    }
+
+    /// A change runs to its end even when nobody waits for it any more: the database and the engine must agree.
+    async fn edit<T, F>(&self, change: impl FnOnce(Arc<Inner>) -> F) -> Result<T, ApiError>
+    where
+        T: Send + 'static,
+        F: Future<Output = Result<T, ApiError>> + Send + 'static,
+    {
+        let (inner, change) = (Arc::clone(&self.0), change(Arc::clone(&self.0)));
+        let edit = tokio::spawn(async move {
+            let _one_at_a_time = inner.edit.lock().await;
+            change.await
+        });
+        edit.await.unwrap_or_else(|error| Err(ApiError::Internal(error.to_string())))
+    }
+
+    fn stale(&self, id: BlockId, revision: u64) -> Option<ApiError> {
+        match self.block(id) {
+            Ok(block) if block.revision == revision => None,
+            Ok(block) => Some(ApiError::Stale(Box::new(block))),
+            Err(unknown) => Some(unknown),
+        }
+    }
+}
+
+/// All findings about a configuration, and the bytes that it would send.
+pub(crate) fn check(config: &MsgCipGeneric) -> Checked {
+    let (plan, all) = MessagePlan::parse(config);
+    let request = plan.map(|plan| write_hex(&plan.request().bytes()));
+    Checked { findings: findings(&all), request }
+}
+
+fn plan(config: &MsgCipGeneric) -> Result<MessagePlan, Vec<Finding>> {
+    let (plan, findings) = MessagePlan::parse(config);
+    plan.ok_or(findings)
+}
+
+/// What can be stored, in its one spelling.
+fn accepted(config: MsgCipGeneric) -> Result<(MsgCipGeneric, MessagePlan), ApiError> {
+    let config = normalised(config);
+    match plan(&config) {
+        Ok(plan) => Ok((config, plan)),
+        Err(all) => Err(ApiError::Findings(findings(&all))),
+    }
+}
+
+fn done(id: BlockId, change: Change) -> Result<Block, ApiError> {
+    match change {
+        Change::Done(block) => Ok(block),
+        Change::Stale(block) => Err(ApiError::Stale(Box::new(block))),
+        Change::Unknown => Err(ApiError::no_block(id)),
+    }
+}

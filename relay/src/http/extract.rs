@@ -1,0 +1,93 @@
+//! Parts of requests, whose rejections are problems like all others.
+
+use axum::extract::{FromRequest, FromRequestParts, Path, Request};
+use axum::http::request::Parts;
+use cipdeck_shared::config::BlockId;
+use futures_util::StreamExt;
+use serde::de::DeserializeOwned;
+
+use crate::error::ApiError;
+
+/// Bytes of a body.
+const MAX_BODY: usize = 1024 * 1024;
+
+/// Bytes that are read and thrown away, so that a client who is still writing hears the answer.
+const MAX_DRAINED: usize = 16 * MAX_BODY;
+
+/// A body as JSON, at most 1 MB.
+#[derive(Debug)]
+pub(super) struct Json<T>(pub(super) T);
+
+/// A body as JSON; without a body the default.
+#[derive(Debug)]
+pub(super) struct OptionalJson<T>(pub(super) T);
+
+/// The block in the address.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Id(pub(super) BlockId);
+
+/// `?revision=3`
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Revision(pub(super) u64);
+
+impl<S: Sync, T: DeserializeOwned> FromRequest<S> for Json<T> {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
+        parse(&body(request).await?).map(Self)
+    }
+}
+
+impl<S: Sync, T: DeserializeOwned + Default> FromRequest<S> for OptionalJson<T> {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
+        let body = body(request).await?;
+        if body.iter().all(u8::is_ascii_whitespace) { Ok(Self(T::default())) } else { parse(&body).map(Self) }
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Id {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let unknown = |text: &str| ApiError::NotFound(format!("there is no block {text}"));
+        let Path(text) =
+            Path::<String>::from_request_parts(parts, state).await.map_err(|_| unknown("like that"))?;
+        text.parse().map(Self).map_err(|_| unknown(&text))
+    }
+}
+
+impl<S: Sync> FromRequestParts<S> for Revision {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, ApiError> {
+        let mut pairs = parts.uri.query().unwrap_or_default().split('&');
+        let revision =
+            pairs.find_map(|pair| pair.strip_prefix("revision=")).and_then(|text| text.parse().ok());
+        revision
+            .map(Self)
+            .ok_or_else(|| ApiError::Unreadable("say which revision you have seen: ?revision=3".to_owned()))
+    }
+}
+
+async fn body(request: Request) -> Result<Vec<u8>, ApiError> {
+    let mut chunks = request.into_body().into_data_stream();
+    let (mut body, mut length) = (Vec::new(), 0_usize);
+    while let Some(chunk) = chunks.next().await {
+        let chunk =
+            chunk.map_err(|error| ApiError::Unreadable(format!("the body did not arrive: {error}")))?;
+        length = length.saturating_add(chunk.len());
+        if length <= MAX_BODY {
+            body.extend_from_slice(&chunk);
+        } else if length > MAX_DRAINED {
+            break;
+        }
+    }
+    if length > MAX_BODY { Err(ApiError::TooLarge(MAX_BODY)) } else { Ok(body) }
+}
+
+fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, ApiError> {
+    serde_json::from_slice(body)
+        .map_err(|error| ApiError::Unreadable(format!("the body cannot be read: {error}")))
+}

@@ -1,0 +1,157 @@
+//! What every block looks like now. State is kept, changes may be dropped: a viewer asks for what is newer than the
+//! last thing that it has seen, so a slow one costs no memory and gets the newest state.
+
+mod changes;
+mod row;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Mutex;
+
+use cipdeck_shared::api::{BlockStatus, ExchangeView};
+use cipdeck_shared::config::{Block, BlockId};
+use cipdeck_shared::engine::{BlockView, Exchange};
+use tokio::sync::watch;
+
+pub(crate) use self::changes::{Cursor, Update};
+use self::row::Row;
+use crate::runner::{Observer, lock};
+use crate::wall_clock;
+
+/// The newest state of all blocks.
+#[derive(Debug)]
+pub(crate) struct Hub {
+    latest: Mutex<Latest>,
+    version: watch::Sender<u64>,
+}
+
+/// Counts up with every change. Each row remembers when it changed last, and `order` finds the newest ones.
+#[derive(Debug, Default)]
+struct Latest {
+    version: u64,
+    rows: BTreeMap<BlockId, Row>,
+    order: BTreeMap<u64, BlockId>,
+    removed: VecDeque<(u64, BlockId)>,
+    /// Viewers that have seen less than this need a snapshot: removals have been forgotten.
+    forgotten: u64,
+}
+
+/// Removals that are remembered for viewers that are behind.
+const MAX_REMOVED: usize = 1_024;
+
+impl Hub {
+    /// Without blocks.
+    pub(crate) fn new() -> Self {
+        Self { latest: Mutex::default(), version: watch::Sender::new(0) }
+    }
+
+    /// A block is new or has changed.
+    pub(crate) fn put(&self, block: Block) {
+        self.change(|latest| {
+            let (id, version) = (block.id, latest.next(block.id));
+            match latest.rows.get_mut(&id) {
+                Some(row) => row.replace(block, version),
+                None => drop(latest.rows.insert(id, Row::new(block, version))),
+            }
+        });
+    }
+
+    /// A block is gone.
+    pub(crate) fn remove(&self, id: BlockId) {
+        self.change(|latest| {
+            let Some(row) = latest.rows.remove(&id) else { return };
+            latest.order.remove(&row.version);
+            latest.version += 1;
+            latest.removed.push_back((latest.version, id));
+            if latest.removed.len() > MAX_REMOVED
+                && let Some((version, _)) = latest.removed.pop_front()
+            {
+                latest.forgotten = version;
+            }
+        });
+    }
+
+    /// All blocks, by id.
+    pub(crate) fn blocks(&self) -> Vec<Block> {
+        lock(&self.latest).rows.values().map(|row| row.block.clone()).collect()
+    }
+
+    /// One block.
+    pub(crate) fn block(&self, id: BlockId) -> Option<Block> {
+        lock(&self.latest).rows.get(&id).map(|row| row.block.clone())
+    }
+
+    /// How many blocks there are.
+    pub(crate) fn len(&self) -> usize {
+        lock(&self.latest).rows.len()
+    }
+
+    /// The status of a block that looks like this now.
+    pub(crate) fn status(&self, id: BlockId, view: &BlockView) -> Option<BlockStatus> {
+        lock(&self.latest).rows.get(&id).map(|row| row.with(id, view))
+    }
+
+    /// The last exchanges of a block, the newest last.
+    pub(crate) fn exchanges(&self, id: BlockId) -> Option<Vec<ExchangeView>> {
+        lock(&self.latest).rows.get(&id).map(Row::exchanges)
+    }
+
+    /// Changes whenever something has changed.
+    pub(crate) fn watch(&self) -> watch::Receiver<u64> {
+        self.version.subscribe()
+    }
+
+    /// What a viewer has not seen yet; `None` when it has seen everything.
+    pub(crate) fn update(&self, cursor: &mut Cursor) -> Option<Update> {
+        lock(&self.latest).update(cursor)
+    }
+
+    fn change(&self, call: impl FnOnce(&mut Latest)) {
+        let mut latest = lock(&self.latest);
+        call(&mut latest);
+        let version = latest.version;
+        drop(latest);
+        self.version.send_replace(version);
+    }
+}
+
+impl Latest {
+    /// A new version for a row: it becomes the newest.
+    fn next(&mut self, id: BlockId) -> u64 {
+        self.version += 1;
+        if let Some(row) = self.rows.get(&id) {
+            self.order.remove(&row.version);
+        }
+        self.order.insert(self.version, id);
+        self.version
+    }
+}
+
+impl Observer for Hub {
+    fn changed(&self, block: BlockId, view: &BlockView) {
+        self.change(|latest| {
+            if latest.rows.contains_key(&block) {
+                let version = latest.next(block);
+                if let Some(row) = latest.rows.get_mut(&block) {
+                    row.changed(view, version, wall_clock::now());
+                }
+            }
+        });
+    }
+
+    fn finished(&self, block: BlockId, view: &BlockView, exchange: &Exchange) -> BlockStatus {
+        let mut status = BlockStatus::new(block, view, Some(wall_clock::now()), None);
+        self.change(|latest| {
+            if latest.rows.contains_key(&block) {
+                let version = latest.next(block);
+                if let Some(row) = latest.rows.get_mut(&block) {
+                    row.finished(view, exchange.clone(), version);
+                    status = row.with(block, view);
+                }
+            }
+        });
+        status
+    }
+}
+
+#[cfg(test)]
+mod tests;

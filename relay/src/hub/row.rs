@@ -1,0 +1,111 @@
+//! One block as viewers see it.
+
+use std::collections::VecDeque;
+
+use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
+use cipdeck_shared::config::{Block, BlockId, write_hex};
+use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
+
+use crate::wall_clock;
+
+/// Exchanges that are kept of each block.
+const MAX_EXCHANGES: usize = 16;
+
+#[derive(Debug)]
+pub(super) struct Row {
+    pub(super) block: Block,
+    /// When the row changed last.
+    pub(super) version: u64,
+    /// When the block itself changed last.
+    pub(super) block_version: u64,
+    /// The newest status, without edges.
+    status: BlockStatus,
+    edges: VecDeque<(u64, StatusBits)>,
+    /// All edges there ever were, with the dropped ones.
+    edge_count: u64,
+    exchanges: VecDeque<(String, Exchange)>,
+}
+
+impl Row {
+    pub(super) fn new(block: Block, version: u64) -> Self {
+        let status = BlockStatus::new(block.id, &BlockView::default(), None, None);
+        Self {
+            block,
+            version,
+            block_version: version,
+            status,
+            edges: VecDeque::new(),
+            edge_count: 0,
+            exchanges: VecDeque::new(),
+        }
+    }
+
+    pub(super) fn replace(&mut self, block: Block, version: u64) {
+        self.block = block;
+        (self.version, self.block_version) = (version, version);
+    }
+
+    pub(super) fn changed(&mut self, view: &BlockView, version: u64, at: String) {
+        self.edge_count += view.edges_dropped;
+        for edge in &view.edges {
+            self.edge_count += 1;
+            if self.edges.len() == MAX_EDGES {
+                self.edges.pop_front();
+            }
+            self.edges.push_back(*edge);
+        }
+        let last = self.status.last.take();
+        self.status = BlockStatus::new(self.block.id, view, Some(at), last);
+        self.status.edges.clear();
+        self.version = version;
+    }
+
+    pub(super) fn finished(&mut self, view: &BlockView, exchange: Exchange, version: u64) {
+        let at = self.status.at.clone().unwrap_or_else(wall_clock::now);
+        if view.q {
+            let (res_data, res_length) = (self.status.res_data.clone(), self.status.res_length);
+            self.status.last = Some(LastSuccess { res_data, res_length, at: at.clone() });
+        }
+        if self.exchanges.len() == MAX_EXCHANGES {
+            self.exchanges.pop_front();
+        }
+        self.exchanges.push_back((at, exchange));
+        self.version = version;
+    }
+
+    /// The status with what the engine shows at this moment.
+    pub(super) fn with(&self, id: BlockId, view: &BlockView) -> BlockStatus {
+        BlockStatus::new(id, view, self.status.at.clone(), self.status.last.clone())
+    }
+
+    /// The status with the edges since `seen`; everything of the last message for a viewer who has seen nothing.
+    /// Returns how many edges the viewer has seen then.
+    pub(super) fn status(&self, seen: Option<u64>) -> (BlockStatus, u64) {
+        let new = match seen {
+            Some(seen) => self.edge_count.saturating_sub(seen),
+            None => self.edges_of_last_message(),
+        };
+        let kept = usize::try_from(new).unwrap_or(usize::MAX).min(self.edges.len());
+        let edges = self.edges.iter().skip(self.edges.len() - kept).copied().collect();
+        let status = BlockStatus { edges, edges_dropped: new - kept as u64, ..self.status.clone() };
+        (status, self.edge_count)
+    }
+
+    pub(super) fn exchanges(&self) -> Vec<ExchangeView> {
+        let hex = |bytes: &Option<Vec<u8>>| bytes.as_deref().map(write_hex);
+        let view = |(at, exchange): &(String, Exchange)| ExchangeView {
+            at: at.clone(),
+            request: write_hex(&exchange.request),
+            response: hex(&exchange.response),
+            request_frame: hex(&exchange.request_frame),
+            response_frame: hex(&exchange.response_frame),
+        };
+        self.exchanges.iter().map(view).collect()
+    }
+
+    /// A message begins with EN alone, at its trigger.
+    fn edges_of_last_message(&self) -> u64 {
+        let begin = self.edges.iter().rposition(|edge| *edge == (0, StatusBits(StatusBits::EN)));
+        (self.edges.len() - begin.unwrap_or(0)) as u64
+    }
+}

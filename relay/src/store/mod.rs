@@ -1,0 +1,30 @@
+//! Blocks in SQLite, on one writer thread: SQLite has one writer, so the code says so.
+//!
+//! Nothing that was acknowledged is lost, not even by `kill -9`: WAL with `synchronous = FULL`.
+
+mod blocks;
+mod error;
+mod schema;
+mod writer;
+
+use std::path::Path;
+
+pub(crate) use self::blocks::Change;
+pub(crate) use self::error::StoreError;
+use self::writer::Writer;
+
+/// Handle to the database. Clones share it.
+#[derive(Clone, Debug)]
+pub(crate) struct Store(Writer);
+
+impl Store {
+    /// Opens or makes the database; without a path it lives in memory.
+    pub(crate) async fn open(path: Option<&Path>) -> Result<Self, StoreError> {
+        Writer::start(path.map(Path::to_owned)).await.map(Self)
+    }
+
+    /// Waits until everything that was asked for has been written, and closes the database for all handles.
+    pub(crate) async fn close(&self) {
+        self.0.close().await;
+    }
+}

@@ -1,0 +1,48 @@
+//! What a viewer says, and what is answered.
+
+use cipdeck_shared::api::{Answer, ClientMessage, ServerMessage};
+
+use crate::blocks::Blocks;
+use crate::error::ApiError;
+
+/// Reads a message. What cannot be read is answered under its id, if it has one.
+pub(super) fn read(text: &str) -> Result<ClientMessage, ServerMessage> {
+    serde_json::from_str(text).map_err(|error| {
+        let id = serde_json::from_str::<serde_json::Value>(text).ok();
+        let id = id.as_ref().and_then(|value| value.get("id")?.as_str()).unwrap_or_default();
+        unreadable(id, &format!("the message cannot be read: {error}"))
+    })
+}
+
+/// The answer to something that is no message of ours.
+pub(super) fn unreadable(id: &str, why: &str) -> ServerMessage {
+    refuse(id.to_owned(), ApiError::Unreadable(why.to_owned()))
+}
+
+/// A command that is not carried out.
+pub(super) fn refuse(id: String, error: ApiError) -> ServerMessage {
+    ServerMessage::Answer { id, answer: Box::new(Answer::Problem(error.into())) }
+}
+
+/// The id under which a message is answered.
+pub(super) fn id(message: &ClientMessage) -> &str {
+    match message {
+        ClientMessage::Run { id, .. } | ClientMessage::Cancel { id, .. } | ClientMessage::In { id, .. } => id,
+    }
+}
+
+/// Carries a command out. A run is answered at DN or ER, everything else at once.
+pub(super) async fn carry_out(message: ClientMessage, blocks: Blocks) -> ServerMessage {
+    let id = id(&message).to_owned();
+    let status = match message {
+        ClientMessage::Run { block, confirm_write, .. } => blocks.run(block, confirm_write).await,
+        ClientMessage::Cancel { block, .. } => blocks.cancel(block),
+        ClientMessage::In { block, input, confirm_write, .. } => {
+            blocks.set_in(block, input, confirm_write).await
+        }
+    };
+    match status {
+        Ok(status) => ServerMessage::Answer { id, answer: Box::new(Answer::Status(status)) },
+        Err(error) => refuse(id, error),
+    }
+}

@@ -1,0 +1,43 @@
+//! The WebSocket at `/api/v1/ws`. docs/WEBSOCKET.md describes it.
+
+mod command;
+mod viewer;
+
+use axum::extract::State;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
+use axum::extract::ws::{WebSocket, WebSocketUpgrade};
+use axum::response::Response;
+use futures_util::StreamExt;
+use tokio_tungstenite::tungstenite::Error as TungsteniteError;
+
+use crate::app::App;
+use crate::error::ApiError;
+
+/// Longest message that a viewer may send.
+const MAX_MESSAGE: usize = 64 * 1024;
+
+/// Longest message that is read at all. What lies between is read to its end, so that the viewer hears why the
+/// connection is closed.
+const MAX_READ: usize = 1024 * 1024;
+
+/// Makes a viewer of the request. `Host` and `Origin` have been checked.
+pub(crate) async fn upgrade(
+    State(app): State<App>,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Result<Response, ApiError> {
+    let upgrade = upgrade.map_err(|rejection| {
+        ApiError::Unreadable(format!("not a WebSocket handshake: {}", rejection.body_text()))
+    })?;
+    let serve = move |socket: WebSocket| async move {
+        let viewers = app.viewers.clone();
+        let (sink, stream) = socket.split();
+        viewers.track_future(viewer::serve(sink, stream, app.blocks, app.stop, is_too_long)).await;
+    };
+    Ok(upgrade.max_message_size(MAX_READ).max_frame_size(MAX_READ).on_upgrade(serve))
+}
+
+fn is_too_long(error: &axum::Error) -> bool {
+    use std::error::Error;
+    let source = error.source().and_then(|source| source.downcast_ref::<TungsteniteError>());
+    matches!(source, Some(TungsteniteError::Capacity(_)))
+}

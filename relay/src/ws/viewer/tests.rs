@@ -1,0 +1,182 @@
+use std::convert::Infallible;
+
+use cipdeck_shared::api::{Answer, ProblemCode};
+use cipdeck_shared::config::{BlockId, MsgCipGeneric};
+use futures_util::stream;
+use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
+use tokio_util::sync::PollSender;
+
+use super::*;
+use crate::draft::Draft;
+use crate::store::Store;
+
+/// A viewer's end of a socket that is made of channels.
+struct Page {
+    to: mpsc::Sender<Result<Message, Infallible>>,
+    from: mpsc::Receiver<Message>,
+    blocks: Blocks,
+    stop: CancellationToken,
+    serving: JoinHandle<()>,
+}
+
+impl Page {
+    /// Opened, with hello and the first snapshot taken.
+    async fn open() -> Self {
+        let blocks = Blocks::open(Store::open(None).await.unwrap()).await.unwrap();
+        let mut page = Self::of(blocks);
+        assert!(matches!(page.next().await, ServerMessage::Hello { protocol: 1, .. }));
+        let ServerMessage::Snapshot { seq: 1, .. } = page.next().await else { panic!("a snapshot") };
+        page
+    }
+
+    fn of(blocks: Blocks) -> Self {
+        let (to, frames) = mpsc::channel(1);
+        let (sink, from) = mpsc::channel(1);
+        let sink = PollSender::new(sink);
+        let stream = stream::unfold(frames, async |mut frames: mpsc::Receiver<_>| {
+            Some((frames.recv().await?, frames))
+        });
+        let stream = Box::pin(stream);
+        let stop = CancellationToken::new();
+        let serving =
+            tokio::spawn(serve(sink, stream, blocks.clone(), stop.clone(), |never| match *never {}));
+        Self { to, from, blocks, stop, serving }
+    }
+
+    async fn say(&mut self, text: impl Into<String>) {
+        self.to.send(Ok(Message::Text(text.into().into()))).await.unwrap();
+    }
+
+    async fn frame(&mut self) -> Message {
+        timeout(Duration::from_secs(5), self.from.recv())
+            .await
+            .expect("a message in time")
+            .expect("an open socket")
+    }
+
+    async fn next(&mut self) -> ServerMessage {
+        let Message::Text(text) = self.frame().await else { panic!("text") };
+        serde_json::from_str(&text).unwrap()
+    }
+
+    async fn answer(&mut self) -> (String, Answer) {
+        loop {
+            if let ServerMessage::Answer { id, answer } = self.next().await {
+                return (id, *answer);
+            }
+        }
+    }
+
+    async fn create(&self, config: MsgCipGeneric) -> BlockId {
+        self.blocks.create(Draft { id: None, revision: None, config }).await.unwrap().id
+    }
+
+    async fn problem(&mut self) -> (String, ProblemCode) {
+        match self.answer().await {
+            (id, Answer::Problem(problem)) => (id, problem.code),
+            (_, Answer::Status(status)) => panic!("{status:?}"),
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_run_is_answered_under_its_id_and_everybody_sees_it() {
+    let mut page = Page::open().await;
+    let id = page.create(MsgCipGeneric::product_name("0,0")).await;
+    let ServerMessage::Changes { seq: 2, blocks, .. } = page.next().await else { panic!("changes") };
+    assert_eq!(blocks[0].id, id);
+    page.say(format!(r#"{{"type":"run","id":"c1","block":"{id}"}}"#)).await;
+    let (mut is_answered, mut is_seen) = (false, false);
+    while !(is_answered && is_seen) {
+        match page.next().await {
+            ServerMessage::Answer { id, answer } => {
+                let Answer::Status(status) = *answer else { panic!("{answer:?}") };
+                assert_eq!((id.as_str(), status.status.status_bits.0), ("c1", 17));
+                is_answered = true;
+            }
+            ServerMessage::Changes { statuses, .. } => {
+                is_seen |= statuses.iter().any(|status| status.q && status.last.is_some());
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[tokio::test]
+async fn what_cannot_be_carried_out_is_told_why() {
+    let mut page = Page::open().await;
+    for (text, id, code) in [
+        ("{", "", ProblemCode::Unreadable),
+        (r#"{"type":"run"}"#, "", ProblemCode::Unreadable),
+        (r#"{"type":"dance","id":"c1"}"#, "c1", ProblemCode::Unreadable),
+        (r#"{"type":"run","id":"c2","block":"b9"}"#, "c2", ProblemCode::NotFound),
+    ] {
+        page.say(text).await;
+        assert_eq!(page.problem().await, (id.to_owned(), code), "{text}");
+    }
+    let mut config = MsgCipGeneric::product_name("0,0");
+    let app = &mut config.app_cfg;
+    (app.service, app.class, app.instance, app.attribute) = (16, 4, 150, 3);
+    config.req_data = "00".repeat(32);
+    let id = page.create(config).await;
+    page.say(format!(r#"{{"type":"run","id":"c3","block":"{id}"}}"#)).await;
+    assert_eq!(page.problem().await, ("c3".to_owned(), ProblemCode::NotPermitted));
+    page.say(format!(r#"{{"type":"run","id":"c4","block":"{id}","confirm_write":1}}"#)).await;
+    assert!(matches!(page.answer().await, (id, Answer::Status(status)) if id == "c4" && status.q));
+    page.to.send(Ok(Message::Binary(vec![1].into()))).await.unwrap();
+    assert_eq!(page.problem().await.1, ProblemCode::Unreadable);
+}
+
+#[tokio::test]
+async fn an_oversize_message_closes_with_1009() {
+    let mut page = Page::open().await;
+    page.say(" ".repeat(MAX_MESSAGE + 1)).await;
+    let Message::Close(Some(frame)) = page.frame().await else { panic!("a close frame") };
+    assert_eq!(frame.code, 1009);
+    drop(page.to);
+    page.serving.await.unwrap();
+}
+
+#[tokio::test]
+async fn stopping_says_so() {
+    let mut page = Page::open().await;
+    page.stop.cancel();
+    let Message::Close(Some(frame)) = page.frame().await else { panic!("a close frame") };
+    assert_eq!(frame.code, 1001);
+    drop(page.to);
+    page.serving.await.unwrap();
+}
+
+#[tokio::test]
+async fn changes_come_at_most_every_50_ms_and_a_slow_viewer_gets_the_newest_only() {
+    let mut page = Page::open().await;
+    let id = page.create(MsgCipGeneric::product_name("0,0")).await;
+    page.next().await;
+    let begin = Instant::now();
+    // Nobody reads meanwhile: the channel holds one message, then the relay waits.
+    for _ in 0..200 {
+        page.blocks.run(id, None).await.unwrap();
+    }
+    let elapsed = begin.elapsed();
+    let mut messages = 0;
+    loop {
+        messages += 1;
+        let ServerMessage::Changes { statuses, .. } = page.next().await else { panic!("changes") };
+        assert_eq!(statuses.len(), 1);
+        assert!(statuses[0].edges.len() <= 16);
+        if statuses[0].runs == 200 && !statuses[0].input {
+            break;
+        }
+    }
+    let most = elapsed.as_millis() / PAUSE.as_millis() + 3;
+    assert!(messages <= most.min(4), "{messages} messages in {elapsed:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_viewer_that_reads_nothing_is_left_behind() {
+    let blocks = Blocks::open(Store::open(None).await.unwrap()).await.unwrap();
+    let page = Page::of(blocks);
+    // Time passes by itself while everybody waits.
+    page.serving.await.unwrap();
+}
