@@ -89,8 +89,7 @@ impl Task {
             Self::Check(preference) => check::all(report, preference)?,
             Self::Dist(preference) => dist::build(report, preference)?,
             Self::Toolchain(preference) => {
-                let wasm = toolchain::find(report, preference)?;
-                report.say(&format!("wasm32 compiler: {wasm}"));
+                toolchain::find(report, preference)?;
             }
             Self::Frontend { release, toolchain } => {
                 let wasm = toolchain::find(report, toolchain)?;

@@ -8,7 +8,6 @@ use crate::{
     frontend::{self, Profile},
     process::{cargo, program, run},
     report::Report,
-    system::Consent,
     toolchain::{self, Preference, WASM, WasmToolchain},
     tools::{self, TestTools},
     workspace,
@@ -17,7 +16,7 @@ use crate::{
 /// Installs what is missing, builds, and runs all tests up to the first that fails.
 pub(crate) fn all(report: &mut Report, preference: Preference, long: bool) -> Result<()> {
     let wasm = toolchain::find(report, preference)?;
-    let tools = install(report, preference.consent)?;
+    let tools = tools::for_tests(report, preference.consent)?;
     // The page comes first: the relay embeds it, and would otherwise be built twice.
     frontend::build(report, &wasm, Profile::Quick)?;
     report.step("tests: shared, relay, page (native)", || {
@@ -32,10 +31,6 @@ pub(crate) fn all(report: &mut Report, preference: Preference, long: bool) -> Re
         report.say("--long: there are no long tests (fuzzing, soak, scale) yet");
     }
     Ok(())
-}
-
-fn install(report: &mut Report, consent: Consent) -> Result<TestTools> {
-    tools::for_tests(report, consent)
 }
 
 /// The core's tests, in the engine that will run the page.

@@ -62,14 +62,22 @@ impl WasmToolchain {
 
 impl Display for WasmToolchain {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name.as_deref().unwrap_or("the default toolchain"))
+        f.write_str(self.name.as_deref().unwrap_or("the present toolchain has the target"))
     }
 }
 
 /// Finds a compiler, or installs one: the present toolchain, then rustup, then Debian's packages.
 pub(crate) fn find(report: &mut Report, preference: Preference) -> Result<WasmToolchain> {
+    report.step("wasm32: a compiler for the page", || {
+        let found = search(preference)?;
+        println!("    {found}");
+        Ok(found)
+    })
+}
+
+fn search(preference: Preference) -> Result<WasmToolchain> {
     if preference.debian {
-        return report.step("wasm32 from Debian's packages", || debian::toolchain(preference));
+        return debian::toolchain(preference);
     }
     if has_target(&mut program("rustc")) {
         return Ok(WasmToolchain { name: None });
@@ -77,18 +85,18 @@ pub(crate) fn find(report: &mut Report, preference: Preference) -> Result<WasmTo
     if let Some(ready) = debian::linked() {
         return Ok(ready);
     }
-    let added = report.step("wasm32: rustup target add", || {
-        if find_program("rustup").is_none() {
-            println!("    rustup is not installed");
-            return Ok(false);
-        }
-        Ok(run(program("rustup").args(["target", "add", WASM])).is_ok() && has_target(&mut program("rustc")))
-    })?;
-    if added {
+    if find_program("rustup").is_none() {
+        println!("    rustup is not installed");
+    } else if run(program("rustup").args(["target", "add", WASM])).is_ok()
+        && has_target(&mut program("rustc"))
+    {
         return Ok(WasmToolchain { name: None });
+    } else {
+        println!("    rustup could not add the target");
     }
     if debian::is_possible() {
-        return report.step("wasm32 from Debian's packages", || debian::toolchain(preference));
+        println!("    trying Debian's packages");
+        return debian::toolchain(preference);
     }
     bail!("{THREE_WAYS}");
 }
