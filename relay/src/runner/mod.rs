@@ -19,7 +19,7 @@ use cipdeck_shared::engine::{BlockView, CommandError, Engine, Event, Exchange, I
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use cipdeck_shared::sim::Device;
 use tokio::runtime::Handle;
-use tokio::sync::{oneshot, watch};
+use tokio::sync::{Notify, oneshot, watch};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
@@ -77,6 +77,8 @@ struct Inner {
     device: Arc<Mutex<Device>>,
     /// When the engine wants to be called.
     wake: watch::Sender<Option<Instant>>,
+    /// While stopping: something has happened.
+    stepped: Notify,
     stop: CancellationToken,
     tasks: TaskTracker,
     runtime: Handle,
@@ -108,6 +110,7 @@ impl Runner {
             clock: Clock::start(),
             device: connect::built_in_device(),
             wake: watch::Sender::new(None),
+            stepped: Notify::new(),
             stop: CancellationToken::new(),
             tasks: TaskTracker::new(),
             runtime: Handle::current(),
@@ -183,10 +186,9 @@ impl Runner {
 impl Inner {
     /// Ready when no connection is left.
     async fn quiet(&self) {
-        // Every call into the engine is followed by a change of `wake`. It is not looked at inside the watch's own
-        // lock, which is taken after the state's elsewhere.
-        let mut wake = self.wake.subscribe();
-        while !lock(&self.state).engine.is_quiet() && wake.changed().await.is_ok() {}
+        while !lock(&self.state).engine.is_quiet() {
+            self.stepped.notified().await;
+        }
     }
 
     /// A command of a person: refused while stopping.
@@ -205,7 +207,11 @@ impl Inner {
         while let Some(event) = state.engine.poll_event() {
             self.carry_out(event, &mut state, now);
         }
-        self.wake.send_replace(state.engine.poll_timeout());
+        let next = state.engine.poll_timeout();
+        self.wake.send_if_modified(|wake| std::mem::replace(wake, next) != next);
+        if state.stopping {
+            self.stepped.notify_one();
+        }
         value
     }
 

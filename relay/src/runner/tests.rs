@@ -174,3 +174,17 @@ async fn stopping_unregisters_the_session() {
     let last = &heard[heard.len() - 24..];
     assert_eq!(last[..2], [0x66, 0], "UnRegisterSession is the last frame");
 }
+
+#[tokio::test]
+async fn a_panic_in_one_connection_is_survived() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    static HAS_PANICKED: AtomicBool = AtomicBool::new(false);
+    let runner = Runner::with_gate(Arc::new(Nobody), |grants, block, revision| {
+        assert!(HAS_PANICKED.swap(true, Ordering::SeqCst), "on purpose, once");
+        permit::permit(grants, block, revision)
+    });
+    runner.put(BLOCK, 1, Ok(name_of_the_demo_device()));
+    assert!(runner.run(BLOCK, None).await.unwrap().status.q);
+    assert!(HAS_PANICKED.load(Ordering::SeqCst));
+    runner.stop().await;
+}
