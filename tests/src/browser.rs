@@ -94,11 +94,20 @@ impl Browser {
         self.clicks += 1;
     }
 
+    /// Clicks the part that is marked for tests with `data-test`.
+    pub async fn click_part(&mut self, mark: &str) {
+        self.click_at(&part(mark), mark).await;
+    }
+
     /// Replaces the text of the field with this label.
     pub async fn fill(&self, label: &str, text: &str) {
-        let xpath = field(label);
-        self.until(&format!("the field `{label}`"), PATIENCE, async |driver| {
-            let element = shown(driver, &xpath).await?;
+        self.fill_at(&field(label), label, text).await;
+    }
+
+    /// Replaces the text of the field that an XPath finds.
+    pub async fn fill_at(&self, xpath: &str, name: &str, text: &str) {
+        self.until(&format!("the field `{name}`"), PATIENCE, async |driver| {
+            let element = shown(driver, xpath).await?;
             element.send_keys(Key::Control + "a").await.ok()?;
             element.send_keys(text).await.ok()
         })
@@ -210,6 +219,11 @@ pub fn control(name: &str) -> String {
         "//*[self::button or self::a or self::summary or @role='button' or @role='tab' or @role='switch']\
          [normalize-space(.)='{name}' or @aria-label='{name}']"
     )
+}
+
+/// XPath of the part of the page that is marked for tests with `data-test`.
+pub fn part(mark: &str) -> String {
+    format!("//*[@data-test='{mark}']")
 }
 
 /// XPath of a form field by its label.

@@ -11,6 +11,7 @@ pub mod browser;
 pub mod command;
 pub mod fake_plc;
 pub mod frame;
+pub mod measure;
 pub mod peers;
 pub mod process;
 pub mod relay;

@@ -50,6 +50,11 @@ impl Relay {
         Viewer::connect(self.address).await
     }
 
+    /// The address of its page.
+    pub fn page(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+
     /// The folder of its database.
     pub fn folder(&self) -> &Path {
         self.folder.path()

@@ -308,6 +308,10 @@ impl Engine {
         self.exchanges.insert(block, entry.exchange());
         self.buffers(channel).enqueue(block);
         self.grant(channel, now);
+        if self.buffers(channel).position(block) > 0 {
+            // Its trigger was announced before it stood in the queue.
+            self.announce_position(block);
+        }
     }
 
     /// A message has ended: its buffer is free, its client forgets it, and its owner hears of it.
@@ -400,11 +404,14 @@ impl Engine {
     fn announce_positions(&mut self, channel: Channel) {
         let waiting: Vec<_> = self.buffers(channel).waiting().take(ANNOUNCED_POSITIONS).collect();
         for block in waiting {
-            if let Some(entry) = self.blocks.get(&block) {
-                let view =
-                    Box::new(BlockView { position: self.position(block, entry), ..entry.block.view() });
-                self.events.push_back(Event::Changed { block, view });
-            }
+            self.announce_position(block);
+        }
+    }
+
+    fn announce_position(&mut self, block: BlockId) {
+        if let Some(entry) = self.blocks.get(&block) {
+            let view = Box::new(BlockView { position: self.position(block, entry), ..entry.block.view() });
+            self.events.push_back(Event::Changed { block, view });
         }
     }
 

@@ -22,7 +22,6 @@ async fn send_reads_the_product_name_of_the_simulated_device() {
     );
     let text = name["text"].as_str().expect("a name").trim_matches(['"', '\'']);
     assert_eq!(data, block::short_string(text), "the text is what the bytes say");
-    println!("{status}");
 }
 
 #[tokio::test]

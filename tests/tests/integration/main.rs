@@ -1,6 +1,15 @@
 //! Integration tests of the relay and the command line against real sockets. One binary, because each would link
 //! the whole relay again.
 
+mod bad_target;
+mod blocks;
 mod command_line;
+mod door;
+mod late_reply;
+mod limits;
 mod peers;
+mod permit;
+mod persistence;
+mod reconnect;
 mod simulated_device;
+mod websocket;
