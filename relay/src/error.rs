@@ -137,3 +137,33 @@ pub enum RunError {
     #[error("the server stopped unexpectedly")]
     Stopped,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_problem_is_documented_with_its_status() {
+        let text = include_str!("../../docs/REST.md");
+        let block = Block {
+            id: BlockId(1),
+            revision: 2,
+            config: cipdeck_shared::config::MsgCipGeneric::product_name("0,0"),
+        };
+        for error in [
+            ApiError::Unreadable(String::new()),
+            ApiError::NotPermitted(String::new()),
+            ApiError::NotFound(String::new()),
+            ApiError::Busy(String::new()),
+            ApiError::Stale(Box::new(block)),
+            ApiError::TooLarge(1),
+            ApiError::Findings(Vec::new()),
+            ApiError::Unavailable(String::new()),
+            ApiError::Internal(String::new()),
+        ] {
+            let problem = serde_json::to_value(Problem::from(error)).unwrap();
+            let row = format!("| `{}` | {} |", problem["code"].as_str().unwrap(), problem["status"]);
+            assert!(text.contains(&row), "docs/REST.md lacks {row}");
+        }
+    }
+}

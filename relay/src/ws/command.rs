@@ -46,3 +46,30 @@ pub(super) async fn carry_out(message: ClientMessage, blocks: Blocks) -> ServerM
         Err(error) => refuse(id, error),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Who writes a client copies from the document.
+    #[test]
+    fn every_example_in_the_document_is_a_message() {
+        let text = include_str!("../../../docs/WEBSOCKET.md");
+        let mut kinds = Vec::new();
+        for example in text.split("```json").skip(1).filter_map(|rest| rest.split("```").next()) {
+            let value: serde_json::Value = serde_json::from_str(example).unwrap();
+            let kind = value["type"].as_str().unwrap().to_owned();
+            if matches!(kind.as_str(), "run" | "cancel" | "in") {
+                let message = read(example).unwrap_or_else(|answer| panic!("{example}: {answer:?}"));
+                assert_eq!(serde_json::to_value(message).unwrap(), value);
+            } else {
+                let message: ServerMessage = serde_json::from_str(example).unwrap();
+                assert_eq!(serde_json::to_value(message).unwrap(), value, "{example}");
+            }
+            kinds.push(kind);
+        }
+        for kind in ["hello", "snapshot", "changes", "answer", "run", "cancel", "in"] {
+            assert!(kinds.iter().any(|there| there == kind), "no example of {kind}");
+        }
+    }
+}
