@@ -1,14 +1,34 @@
 //! cipdeck's page: builds, explains, runs and monitors blocks in the browser.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`editor`] | typed text → draft → findings; no browser in it |
+//! | [`store`] | the rows of the deck, outside the virtual DOM |
+//! | [`net`] | the relay: socket, REST, when to come back |
+//! | [`demo`] | engine and simulated device in the browser alone |
+//! | [`workbench`] | what can be done with a block, and where it runs |
+//! | [`kit`] | small components on native elements |
+//! | [`pages`] | what people see |
 
-use yew::prelude::*;
+rust_i18n::i18n!("locales", fallback = "en");
+
+pub mod app;
+pub mod browser;
+pub mod demo;
+pub mod editor;
+pub mod frame_stats;
+pub mod hooks;
+mod i18n;
+pub mod kit;
+pub mod net;
+pub mod notice;
+pub mod pages;
+mod route;
+pub mod store;
+mod theme;
+pub mod workbench;
 
 /// Puts the page into the document's body.
 pub fn start() {
-    yew::Renderer::<App>::new().render();
-}
-
-/// The whole page.
-#[component]
-pub fn App() -> Html {
-    html! { <h1>{ "cipdeck" }</h1> }
+    yew::Renderer::<app::App>::new().render();
 }

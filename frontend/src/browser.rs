@@ -1,0 +1,93 @@
+//! The few things that the page asks the browser for. Every one has an answer where the browser has none.
+
+use js_sys::Date;
+use wasm_bindgen::{JsCast, JsValue, closure::Closure};
+use web_sys::{Element, Storage};
+use yew::platform::spawn_local;
+
+/// Milliseconds since the page was opened. Never goes back.
+pub fn now_ms() -> f64 {
+    web_sys::window().and_then(|window| window.performance()).map_or(0.0, |performance| performance.now())
+}
+
+/// The wall clock as RFC 3339.
+pub fn wall_clock() -> String {
+    Date::new_0().to_iso_string().into()
+}
+
+/// Seconds since a time in RFC 3339; never negative, `None` for what is no time.
+pub fn age_s(at: &str) -> Option<f64> {
+    let then = Date::parse(at);
+    (!then.is_nan()).then(|| ((Date::now() - then) / 1_000.0).max(0.0))
+}
+
+/// Calls once before the next picture is drawn.
+pub fn before_next_frame(call: Box<dyn FnOnce()>) {
+    let closure = Closure::once_into_js(call);
+    if let Some(window) = web_sys::window() {
+        // Refused only by a window that is gone, which draws no picture.
+        let _ = window.request_animation_frame(closure.unchecked_ref());
+    }
+}
+
+/// The address of a WebSocket of the server that this page came from.
+pub fn websocket_url(path: &str) -> Option<String> {
+    let location = web_sys::window()?.location();
+    let scheme = if location.protocol().ok()? == "https:" { "wss" } else { "ws" };
+    Some(format!("{scheme}://{}{path}", location.host().ok()?))
+}
+
+/// What this browser has kept under a name.
+pub fn kept(name: &str) -> Option<String> {
+    storage()?.get_item(name).ok()?
+}
+
+/// Keeps a text over a reload. A full or forbidden storage costs only that.
+pub fn keep(name: &str, text: &str) {
+    if let Some(storage) = storage() {
+        let _ = storage.set_item(name, text);
+    }
+}
+
+/// The `html` element.
+pub fn root() -> Option<Element> {
+    web_sys::window()?.document()?.document_element()
+}
+
+/// Whether the system asks for dark colours.
+pub fn prefers_dark() -> bool {
+    let query =
+        web_sys::window().and_then(|window| window.match_media("(prefers-color-scheme: dark)").ok()?);
+    query.is_some_and(|query| query.matches())
+}
+
+/// Puts a text on the clipboard; says whether the browser allowed it.
+pub fn copy(text: &str, done: impl FnOnce(bool) + 'static) {
+    let clipboard = web_sys::window()
+        .map(|window| window.navigator())
+        .filter(|navigator| {
+            js_sys::Reflect::get(navigator, &"clipboard".into()).is_ok_and(|it| it.is_object())
+        })
+        .map(|navigator| navigator.clipboard().write_text(text));
+    spawn_local(async move {
+        let copied = match clipboard {
+            Some(promise) => js_sys::futures::JsFuture::from(promise).await.is_ok(),
+            None => false,
+        };
+        done(copied);
+    });
+}
+
+/// Offers a function to scripts of this page, such as a test's.
+pub fn offer(name: &str, function: impl Fn() -> JsValue + 'static) {
+    let closure = Closure::<dyn Fn() -> JsValue>::new(function);
+    if let Some(window) = web_sys::window() {
+        let _ = js_sys::Reflect::set(&window, &name.into(), closure.as_ref());
+    }
+    // Lives as long as the page.
+    closure.forget();
+}
+
+fn storage() -> Option<Storage> {
+    web_sys::window()?.local_storage().ok()?
+}

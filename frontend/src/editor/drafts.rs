@@ -1,0 +1,167 @@
+//! All drafts of this browser. They survive a reload.
+
+use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+
+use cipdeck_shared::{config::MsgCipGeneric, plan::Field};
+use serde::{Deserialize, Serialize};
+use yew::Callback;
+
+use super::{draft::Draft, number::number_fields};
+use crate::store::{DeckId, Watch, Watchers};
+
+/// Where drafts are kept as text, such as the browser's local storage.
+pub type Keep = Rc<dyn Fn(&str)>;
+
+/// A handle to the drafts. Clones are the same store.
+#[derive(Clone)]
+pub struct DraftStore(Rc<Inner>);
+
+struct Inner {
+    keep: Keep,
+    drafts: RefCell<BTreeMap<DeckId, Rc<Draft>>>,
+    watchers: RefCell<BTreeMap<DeckId, Watchers>>,
+    last_new: RefCell<u32>,
+}
+
+impl DraftStore {
+    /// The drafts that `kept` describes; what cannot be read is dropped.
+    pub fn new(kept: Option<&str>, keep: Keep) -> Self {
+        let drafts = kept.map(read).unwrap_or_default();
+        let last_new = drafts.keys().filter_map(|id| new_number(*id)).max().unwrap_or(0);
+        let (drafts, watchers) = (RefCell::new(drafts), RefCell::default());
+        Self(Rc::new(Inner { keep, drafts, watchers, last_new: RefCell::new(last_new) }))
+    }
+
+    /// The draft of an entry, if it has one.
+    pub fn draft(&self, id: DeckId) -> Option<Rc<Draft>> {
+        self.0.drafts.borrow().get(&id).cloned()
+    }
+
+    /// Entries with drafts.
+    pub fn ids(&self) -> Vec<DeckId> {
+        self.0.drafts.borrow().keys().copied().collect()
+    }
+
+    /// A name that no entry has: for a new block.
+    pub fn next_new(&self) -> DeckId {
+        let mut last = self.0.last_new.borrow_mut();
+        *last += 1;
+        DeckId::New(*last)
+    }
+
+    /// Keeps a draft.
+    pub fn put(&self, id: DeckId, draft: Draft) {
+        self.0.drafts.borrow_mut().insert(id, Rc::new(draft));
+        self.changed(id);
+    }
+
+    /// Forgets a draft.
+    pub fn discard(&self, id: DeckId) {
+        if self.0.drafts.borrow_mut().remove(&id).is_some() {
+            self.changed(id);
+        }
+    }
+
+    /// Wakes when the draft of this entry changes, comes or goes.
+    pub fn watch(&self, id: DeckId, wake: Callback<()>) -> Watch {
+        self.0.watchers.borrow_mut().entry(id).or_default().watch(wake)
+    }
+
+    fn changed(&self, id: DeckId) {
+        (self.0.keep)(&write(&self.0.drafts.borrow()));
+        let watchers = self.0.watchers.borrow().get(&id).cloned();
+        if let Some(watchers) = watchers {
+            watchers.wake();
+        }
+    }
+}
+
+impl PartialEq for DraftStore {
+    fn eq(&self, other: &Self) -> bool {
+        Rc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl fmt::Debug for DraftStore {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "DraftStore({} drafts)", self.0.drafts.borrow().len())
+    }
+}
+
+/// One draft as text.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    revision: Option<u64>,
+    config: MsgCipGeneric,
+    typed: BTreeMap<String, String>,
+}
+
+fn write(drafts: &BTreeMap<DeckId, Rc<Draft>>) -> String {
+    let kept: BTreeMap<String, Kept> = drafts
+        .iter()
+        .map(|(id, draft)| {
+            let typed = draft.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect();
+            (id.to_string(), Kept { revision: draft.revision, config: draft.config.clone(), typed })
+        })
+        .collect();
+    serde_json::to_string(&kept).unwrap_or_default()
+}
+
+fn read(text: &str) -> BTreeMap<DeckId, Rc<Draft>> {
+    let kept: BTreeMap<String, serde_json::Value> = serde_json::from_str(text).unwrap_or_default();
+    kept.into_iter()
+        .filter_map(|(id, value)| {
+            let kept: Kept = serde_json::from_value(value).ok()?;
+            Some((id.parse().ok()?, Rc::new(Draft::restored(kept.config, kept.revision, typed(&kept.typed)))))
+        })
+        .collect()
+}
+
+fn typed(kept: &BTreeMap<String, String>) -> BTreeMap<Field, String> {
+    let field = |field: Field| kept.get(&field.to_string()).cloned().map(|text| (field, text));
+    number_fields().into_iter().filter_map(field).collect()
+}
+
+const fn new_number(id: DeckId) -> Option<u32> {
+    match id {
+        DeckId::New(number) => Some(number),
+        DeckId::Stored(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::Edit;
+    use cipdeck_shared::config::BlockId;
+
+    fn kept() -> (DraftStore, Rc<RefCell<String>>) {
+        let text = Rc::new(RefCell::new(String::new()));
+        let into = text.clone();
+        (DraftStore::new(None, Rc::new(move |text| *into.borrow_mut() = text.to_owned())), text)
+    }
+
+    #[test]
+    fn drafts_survive_a_reload_with_the_text_that_was_typed() {
+        let (store, text) = kept();
+        let mut draft = Draft::new(MsgCipGeneric::product_name("4,10.0.0.1"), Some(3));
+        draft.edit(Edit::Number(Field::MemberId(1), "1x".into()));
+        let stored = DeckId::Stored(BlockId(7));
+        store.put(stored, draft.clone());
+        let new = store.next_new();
+        store.put(new, Draft::new(MsgCipGeneric::product_name("0,0"), None));
+        let again = DraftStore::new(Some(&text.borrow()), Rc::new(|_| ()));
+        assert_eq!(*again.draft(stored).unwrap(), draft);
+        assert_eq!(again.ids(), [stored, new]);
+        assert_ne!(again.next_new(), new, "a new block gets a name of its own");
+    }
+
+    #[test]
+    fn one_unreadable_draft_does_not_cost_the_others() {
+        let (store, text) = kept();
+        store.put(DeckId::New(1), Draft::new(MsgCipGeneric::product_name("0,0"), None));
+        let broken = text.borrow().replacen('{', r#"{"new-2":{"config":1},"#, 1);
+        assert_eq!(DraftStore::new(Some(&broken), Rc::new(|_| ())).ids(), [DeckId::New(1)]);
+        assert!(DraftStore::new(Some("not json"), Rc::new(|_| ())).ids().is_empty());
+    }
+}

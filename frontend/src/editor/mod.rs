@@ -1,0 +1,13 @@
+//! Editing: typed text → draft → configuration → findings. Nothing here touches the page.
+
+mod draft;
+mod drafts;
+mod number;
+mod remark;
+
+pub use self::{
+    draft::{Draft, Edit},
+    drafts::{DraftStore, Keep},
+    number::{hexadecimal, number, other_radix},
+    remark::Remark,
+};

@@ -1,0 +1,90 @@
+//! How components learn of changes outside the virtual DOM.
+
+use std::rc::Rc;
+
+use gloo_timers::callback::Interval;
+use yew::prelude::*;
+
+use crate::{
+    editor::Draft,
+    net::Link,
+    notice::Notice,
+    store::{DeckId, Row, RowStore},
+    workbench::Workbench,
+};
+
+/// The application, from the context.
+#[hook]
+pub fn use_workbench() -> Workbench {
+    use_context::<Workbench>().expect("the page provides a Workbench")
+}
+
+/// One row; renders once in a frame in which it has changed.
+#[hook]
+pub fn use_row(id: DeckId) -> Option<Rc<Row>> {
+    let store = use_context::<RowStore>().expect("the page provides a RowStore");
+    let update = use_force_update();
+    use_effect_with((store.clone(), id), move |(store, id)| {
+        let watch = store.watch(*id, Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    store.row(id)
+}
+
+/// All entries; renders when one comes or goes.
+#[hook]
+pub fn use_ids() -> Rc<[DeckId]> {
+    let store = use_context::<RowStore>().expect("the page provides a RowStore");
+    let update = use_force_update();
+    use_effect_with(store.clone(), move |store| {
+        let watch = store.watch_ids(Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    store.ids()
+}
+
+/// The draft of an entry, if it has one.
+#[hook]
+pub fn use_draft(id: DeckId) -> Option<Rc<Draft>> {
+    let bench = use_workbench();
+    let update = use_force_update();
+    use_effect_with((bench.clone(), id), move |(bench, id)| {
+        let watch = bench.drafts().watch(*id, Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    bench.drafts().draft(id)
+}
+
+/// The connection.
+#[hook]
+pub fn use_link() -> Link {
+    let bench = use_workbench();
+    let update = use_force_update();
+    use_effect_with(bench.clone(), move |bench| {
+        let watch = bench.relay().watch(Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    bench.relay().link()
+}
+
+/// What is to be told about an entry.
+#[hook]
+pub fn use_notice(id: DeckId) -> Option<Notice> {
+    let bench = use_workbench();
+    let update = use_force_update();
+    use_effect_with(bench.clone(), move |bench| {
+        let watch = bench.notices().watch(Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    bench.notices().notice(id)
+}
+
+/// Renders every second while `running`: for ages.
+#[hook]
+pub fn use_second(running: bool) {
+    let update = use_force_update();
+    use_effect_with(running, move |running| {
+        let ticks = running.then(|| Interval::new(1_000, move || update.force_update()));
+        move || drop(ticks)
+    });
+}

@@ -1,0 +1,63 @@
+//! A number, shown in the radix that was typed and beside it in the other.
+
+use cipdeck_shared::config::read_number;
+use yew::prelude::*;
+
+use super::field::{FieldRow, describes};
+use crate::editor::{Remark, other_radix};
+
+/// A number field.
+#[derive(Clone, Debug, PartialEq, Properties)]
+pub struct NumberFieldProps {
+    /// Of the input.
+    pub id: AttrValue,
+    /// Its name in JSON.
+    pub name: AttrValue,
+    /// Visible name.
+    pub label: AttrValue,
+    /// As typed.
+    pub text: AttrValue,
+    /// What the number means: a service's or a class's name.
+    #[prop_or_default]
+    pub meaning: Option<AttrValue>,
+    /// Shown while nothing is typed.
+    #[prop_or_default]
+    pub placeholder: Option<AttrValue>,
+    /// What is to be said about it.
+    #[prop_or_default]
+    pub remarks: Vec<Remark>,
+    /// Hears every change of the text.
+    pub on_text: Callback<String>,
+}
+
+/// `[14] = 0x0E Get_Attribute_Single`
+#[component]
+pub fn NumberField(props: &NumberFieldProps) -> Html {
+    let on_text = props.on_text.clone();
+    let oninput = use_callback(on_text, |event: InputEvent, on_text| {
+        let input: web_sys::HtmlInputElement = event.target_unchecked_into();
+        on_text.emit(input.value());
+    });
+    let value = read_number(&props.text).ok();
+    let radix = value.map(|value| format!("= {}", other_radix(&props.text, value)));
+    let parts: Vec<_> = radix.into_iter().chain(props.meaning.as_ref().map(ToString::to_string)).collect();
+    let readout = (!parts.is_empty()).then(|| AttrValue::from(parts.join("  ")));
+    let invalid = props.remarks.iter().any(Remark::is_error).then_some("true");
+    html! {
+        <FieldRow id={props.id.clone()} label={props.label.clone()} remarks={props.remarks.clone()} readout={readout.clone()}>
+            <input
+                id={props.id.clone()}
+                class="input number"
+                name={props.name.clone()}
+                value={props.text.clone()}
+                placeholder={props.placeholder.clone()}
+                inputmode="text"
+                autocomplete="off"
+                spellcheck="false"
+                aria-invalid={invalid}
+                aria-describedby={describes(&props.id, &props.remarks, readout.as_ref())}
+                {oninput}
+            />
+        </FieldRow>
+    }
+}

@@ -1,0 +1,145 @@
+//! What went wrong with the last command, and the choice when two people changed one block.
+
+use std::rc::Rc;
+
+use cipdeck_shared::{
+    api::{Problem, ProblemCode},
+    config::{Block, MsgCipGeneric},
+};
+use yew::prelude::*;
+
+use super::subject::Subject;
+use crate::{
+    hooks::{use_notice, use_workbench},
+    i18n::{tr, try_text},
+    notice::Notice,
+    store::DeckId,
+};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct NoticeBarProps {
+    pub(super) id: DeckId,
+    pub(super) subject: Rc<Subject>,
+}
+
+/// Nothing, a problem, or a conflict.
+#[component]
+pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
+    let bench = use_workbench();
+    let notice = use_notice(props.id);
+    let on_dismiss = use_callback((bench, props.id), |_: MouseEvent, (bench, id)| bench.notices().clear(*id));
+    match notice {
+        None => html! {},
+        Some(Notice::Problem(problem)) => html! {
+            <div class="notice" role="alert" data-test="problem" data-code={code(&problem)}>
+                <p>{ words(&problem) }</p>
+                <button type="button" class="quiet-button" onclick={on_dismiss}>{ tr!("notice.dismiss") }</button>
+            </div>
+        },
+        Some(Notice::Conflict(current)) => html! {
+            <Conflict id={props.id} mine={props.subject.clone()} {current} />
+        },
+    }
+}
+
+/// The code as JSON has it.
+fn code(problem: &Problem) -> String {
+    serde_json::to_value(&problem.code)
+        .ok()
+        .and_then(|code| code.as_str().map(str::to_owned))
+        .unwrap_or_default()
+}
+
+fn words(problem: &Problem) -> String {
+    let code = code(problem);
+    // The detail of a relay is for people, too; ours is the one that the page translates.
+    match (try_text(&format!("problem.code_{code}")), &problem.code) {
+        (Some(words), ProblemCode::Findings | ProblemCode::NotFound) => words,
+        (Some(words), _) if problem.detail.is_empty() => words,
+        (Some(words), _) => format!("{words} {}", problem.detail),
+        (None, _) => format!("{}: {}", problem.title, problem.detail),
+    }
+}
+
+#[derive(Clone, PartialEq, Properties)]
+struct ConflictProps {
+    id: DeckId,
+    mine: Rc<Subject>,
+    current: Rc<Block>,
+}
+
+/// Both versions, member by member where they differ.
+#[component]
+fn Conflict(props: &ConflictProps) -> Html {
+    let bench = use_workbench();
+    let ConflictProps { id, mine, current } = props.clone();
+    let on_mine =
+        use_callback((bench.clone(), id, current.clone()), |_: MouseEvent, (bench, id, current)| {
+            bench.save_over(*id, current);
+        });
+    let on_theirs = use_callback((bench, id, current.clone()), |_: MouseEvent, (bench, id, current)| {
+        bench.rows().put_stored((**current).clone());
+        bench.revert(*id);
+    });
+    let rows = differences(&mine.draft.config, &current.config);
+    html! {
+        <div class="notice conflict" role="alert" data-test="conflict">
+            <p>{ tr!("conflict.text", revision = current.revision) }</p>
+            <table class="differences">
+                <thead><tr><th>{ tr!("conflict.member") }</th><th>{ tr!("conflict.mine") }</th><th>{ tr!("conflict.theirs") }</th></tr></thead>
+                <tbody>{ for rows.iter().map(|(member, mine, theirs)| html! {
+                    <tr><th scope="row">{ member }</th><td>{ mine }</td><td>{ theirs }</td></tr>
+                }) }</tbody>
+            </table>
+            <button type="button" class="button" onclick={on_mine} data-test="keep-mine">{ tr!("conflict.keep_mine") }</button>
+            <button type="button" class="button" onclick={on_theirs} data-test="take-theirs">{ tr!("conflict.take_theirs") }</button>
+        </div>
+    }
+}
+
+/// Members that differ, with both values as JSON has them.
+fn differences(mine: &MsgCipGeneric, theirs: &MsgCipGeneric) -> Vec<(String, String, String)> {
+    let value = |config| serde_json::to_value(config).unwrap_or_default();
+    let mut found = Vec::new();
+    compare("", &value(mine), &value(theirs), &mut found);
+    found
+}
+
+fn compare(
+    path: &str,
+    mine: &serde_json::Value,
+    theirs: &serde_json::Value,
+    found: &mut Vec<(String, String, String)>,
+) {
+    if let (Some(mine), Some(theirs)) = (mine.as_object(), theirs.as_object()) {
+        let nothing = serde_json::Value::Null;
+        let mut members: Vec<_> = mine.keys().chain(theirs.keys()).collect();
+        members.sort();
+        members.dedup();
+        for member in members {
+            let path = if path.is_empty() { member.clone() } else { format!("{path}.{member}") };
+            let (mine, theirs) =
+                (mine.get(member).unwrap_or(&nothing), theirs.get(member).unwrap_or(&nothing));
+            compare(&path, mine, theirs, found);
+        }
+    } else if mine != theirs {
+        found.push((path.to_owned(), mine.to_string(), theirs.to_string()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_members_that_differ_are_shown() {
+        let mine = MsgCipGeneric::product_name("0,0");
+        let mut theirs = mine.clone();
+        theirs.app_cfg.attribute = 6;
+        theirs.req_length = Some(0);
+        let expected = [("AppCfg.Attribute", "7", "6"), ("ReqLength", "null", "0")];
+        let found = differences(&mine, &theirs);
+        let found: Vec<_> = found.iter().map(|(a, b, c)| (a.as_str(), b.as_str(), c.as_str())).collect();
+        assert_eq!(found, expected);
+    }
+}

@@ -1,0 +1,153 @@
+//! What the device said: the decoded value, the last good one with its age, or the trouble in words.
+
+use std::rc::Rc;
+
+use cipdeck_shared::{
+    api::LastSuccess,
+    config::read_hex,
+    dissect::{self, Decoded},
+    engine::Phase,
+    plan::MessagePlan,
+    wire::{MessageRouterReply, MessageRouterRequest},
+};
+use yew::prelude::*;
+
+use super::{axis::duration, trouble::Trouble};
+use crate::{browser, hooks::use_second, i18n::tr, store::Row};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct OutcomeProps {
+    pub(super) row: Rc<Row>,
+}
+
+/// The result of the newest run.
+#[component]
+pub(super) fn Outcome(props: &OutcomeProps) -> Html {
+    let row = &props.row;
+    let status = &row.status;
+    use_second(status.last.is_some());
+    let shown = if status.q {
+        Some(status.res_data.clone())
+    } else {
+        status.last.as_ref().map(|last| last.res_data.clone())
+    };
+    let request = request_of(row);
+    let values = use_memo((request, shown), |(request, data)| decode(request.as_deref(), data.as_deref()));
+    html! {
+        <div class="outcome" aria-live="off">
+            <h2>
+                { tr!("outcome.title") }
+                if let Some(us) = status.reply_us {
+                    <span class="count">{ tr!("outcome.reply_time", time = duration(us)) }</span>
+                }
+            </h2>
+            { match status.phase {
+                Phase::Idle if status.last.is_none() => html! { <p class="quiet">{ tr!("outcome.never") }</p> },
+                Phase::Failed => html! { <Trouble status={status.clone()} /> },
+                phase if phase.is_busy() => html! { <p class="quiet" role="status">{ tr!("outcome.busy") }</p> },
+                _ => html! {},
+            } }
+            if status.q {
+                { decoded(&values) }
+            } else if let Some(last) = &status.last {
+                <div class="last">
+                    <h3>{ tr!("outcome.last") }<span class="age" data-test="last-age">{ age(last) }</span></h3>
+                    { decoded(&values) }
+                </div>
+            }
+        </div>
+    }
+}
+
+/// The request that the newest reply answers; without an exchange, the one that is configured.
+fn request_of(row: &Row) -> Option<Vec<u8>> {
+    let sent = row.exchange.as_ref().and_then(|exchange| read_hex(&exchange.request).ok());
+    sent.or_else(|| Some(MessagePlan::parse(&row.config).0?.request().bytes()))
+}
+
+/// `ResData` exists only after a success: the reply around it is known.
+pub(crate) fn decode(request: Option<&[u8]>, data: Option<&str>) -> Vec<Decoded> {
+    let Some((request, data)) = request.zip(data.and_then(|data| read_hex(data).ok())) else {
+        return Vec::new();
+    };
+    let Ok(service) = MessageRouterRequest::decode(request).map(|request| request.service()) else {
+        return Vec::new();
+    };
+    let mut reply = Vec::new();
+    MessageRouterReply::success(service, &data).encode(&mut reply);
+    dissect::decode(request, &reply)
+}
+
+fn decoded(values: &[Decoded]) -> Html {
+    if values.is_empty() {
+        return html! { <p class="quiet" data-test="decoded-empty">{ tr!("outcome.no_data") }</p> };
+    }
+    let guessed = values.iter().any(|value| value.guess);
+    html! { <>
+        if guessed {
+            <p class="guess-note">{ tr!("outcome.guess") }</p>
+        }
+        <ul class={classes!("values", (values.len() == 1).then_some("single"))} data-test="decoded">
+            { for values.iter().map(value) }
+        </ul>
+    </> }
+}
+
+fn value(value: &Decoded) -> Html {
+    html! {
+        <li class={classes!("value", value.guess.then_some("guess"))}>
+            <span class="value-name">{ value.name.to_string() }</span>
+            <span class="value-text" data-test="decoded-value">{ &value.text }</span>
+            <span class="value-type">
+                { value.type_name.to_string() }
+                if value.guess {
+                    <span class="guess-word">{ tr!("outcome.guess_word") }</span>
+                }
+            </span>
+        </li>
+    }
+}
+
+fn age(last: &LastSuccess) -> AttrValue {
+    browser::age_s(&last.at).map_or_else(AttrValue::default, age_words)
+}
+
+/// `3 s ago`
+pub(crate) fn age_words(seconds: f64) -> AttrValue {
+    match seconds {
+        ..1.5 => tr!("age.now"),
+        ..90.0 => tr!("age.seconds", count = format!("{seconds:.0}")),
+        ..5_400.0 => tr!("age.minutes", count = format!("{:.0}", seconds / 60.0)),
+        ..129_600.0 => tr!("age.hours", count = format!("{:.0}", seconds / 3_600.0)),
+        _ => tr!("age.days", count = format!("{:.0}", seconds / 86_400.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cipdeck_shared::config::MsgCipGeneric;
+
+    #[test]
+    fn the_data_of_a_success_is_decoded_by_its_request() {
+        let (plan, _) = MessagePlan::parse(&MsgCipGeneric::product_name("0,0"));
+        let request = plan.unwrap().request().bytes();
+        let values = decode(Some(&request), Some("0443504831"));
+        assert_eq!((values[0].text.as_str(), values[0].guess), ("CPH1", false));
+        assert!(decode(Some(&request), None).is_empty());
+        assert!(decode(None, Some("00")).is_empty());
+    }
+
+    #[test]
+    fn ages_have_the_unit_that_fits() {
+        for (seconds, words) in [
+            (0.3, "now"),
+            (3.0, "3 s ago"),
+            (120.0, "2 min ago"),
+            (7_200.0, "2 h ago"),
+            (200_000.0, "2 d ago"),
+        ] {
+            assert_eq!(age_words(seconds), words);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! An error in words: what happened, what the numbers mean and how well that is known, what to try.
+
+use std::rc::Rc;
+
+use cipdeck_shared::{
+    api::BlockStatus,
+    engine::Cause,
+    table::{Confidence, Entry},
+};
+use yew::prelude::*;
+
+use super::codes::{cause_key, entries};
+use crate::i18n::{tr, try_text};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct TroubleProps {
+    pub(super) status: Rc<BlockStatus>,
+}
+
+/// Everything known about a failed run.
+#[component]
+pub(super) fn Trouble(props: &TroubleProps) -> Html {
+    let codes = &props.status.status;
+    let cause = props.status.cause.as_ref();
+    let entries = entries(codes, cause.and_then(|cause| cause.status));
+    let key = cause.map(|cause| cause_key(&cause.what)).unwrap_or_default();
+    // A cause of a newer relay has no text here: its own word is better than nothing.
+    let what = try_text(&format!("cause.{key}")).unwrap_or_else(|| key.clone());
+    let tries = try_text(&format!("try.{key}"));
+    let hints: Vec<_> = entries.iter().map(|entry| entry.hint).filter(|hint| !hint.is_empty()).collect();
+    html! {
+        <div class="trouble" role="alert" data-test="error">
+            <p class="trouble-title">
+                <span class="trouble-codes mono" data-test="error-codes">{ numbers(&props.status) }</span>
+                <b data-test="error-name">{ entries.first().map_or("", |entry| entry.name) }</b>
+            </p>
+            <p>{ what }{ " " }{ detail(cause) }</p>
+            { acted(cause) }
+            <ul class="entries-of-error">{ for entries.iter().map(explain) }</ul>
+            if tries.is_some() || !hints.is_empty() {
+                <h3>{ tr!("error.try") }</h3>
+                <ul class="tries">
+                    { for hints.iter().map(|hint| html! { <li>{ *hint }</li> }) }
+                    { for tries.iter().map(|words| html! { <li>{ words }</li> }) }
+                </ul>
+            }
+        </div>
+    }
+}
+
+/// `ErrorID 224 · SubErrorID 5 (0x05) · ExtErrorID 0`
+fn numbers(status: &BlockStatus) -> String {
+    let codes = &status.status;
+    let hex = |value: u16| format!("{value} (0x{value:02X})");
+    let ext = if codes.ext_error_id == 0 {
+        String::new()
+    } else {
+        format!(" · ExtErrorID {}", hex(codes.ext_error_id))
+    };
+    format!("ErrorID {} · SubErrorID {}{ext}", codes.error_id, hex(codes.sub_error_id))
+}
+
+fn detail(cause: Option<&Cause>) -> String {
+    let Some(cause) = cause else { return String::new() };
+    let mut parts = Vec::new();
+    parts.extend(
+        cause.status.map(|status| tr!("error.encapsulation", status = format!("0x{status:02X}")).to_string()),
+    );
+    parts.extend(cause.byte.map(|byte| tr!("error.byte", byte = byte).to_string()));
+    if cause.additional.len() > 1 {
+        let words: Vec<_> = cause.additional.iter().map(|word| format!("0x{word:04X}")).collect();
+        parts.push(tr!("error.additional", words = words.join(" ")).to_string());
+    }
+    parts.extend(cause.detail.clone());
+    parts.join(" ")
+}
+
+/// The device may have, or has, carried out a request that failed.
+fn acted(cause: Option<&Cause>) -> Html {
+    match cause {
+        Some(cause) if cause.has_acted => {
+            html! { <p class="warning-text" data-test="has-acted">{ tr!("error.has_acted") }</p> }
+        }
+        Some(cause) if cause.may_have_acted => {
+            html! { <p class="warning-text" data-test="may-have-acted">{ tr!("error.may_have_acted") }</p> }
+        }
+        _ => html! {},
+    }
+}
+
+fn explain(entry: &Entry) -> Html {
+    let confidence = match entry.confidence {
+        Confidence::Confirmed => tr!("confidence.confirmed"),
+        Confidence::Inferred => tr!("confidence.inferred"),
+        Confidence::Recalled => tr!("confidence.recalled"),
+        Confidence::FieldReport => tr!("confidence.field_report"),
+        Confidence::Doubtful => tr!("confidence.doubtful"),
+    };
+    html! {
+        <li>
+            <b>{ entry.name }</b>
+            if !entry.meaning.is_empty() {
+                { ": " }{ entry.meaning }
+            }
+            <span class={classes!("confidence", (entry.confidence != Confidence::Confirmed).then_some("unsure"))} title={entry.source}>
+                { confidence }
+            </span>
+        </li>
+    }
+}

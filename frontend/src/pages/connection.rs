@@ -1,0 +1,48 @@
+//! The connection to the relay, always visible.
+
+use yew::prelude::*;
+
+use crate::{
+    browser,
+    hooks::{use_link, use_second, use_workbench},
+    i18n::tr,
+    kit::Shape,
+    net::Link,
+};
+
+/// Word, shape and colour of the connection; a button to try now.
+#[component]
+pub fn Connection() -> Html {
+    let bench = use_workbench();
+    let link = use_link();
+    let waits = matches!(link, Link::Lost { .. } | Link::None { .. });
+    use_second(waits);
+    let onclick = use_callback(bench, |_: MouseEvent, bench| bench.relay().connect());
+    let (state, shape, words) = say(&link);
+    html! {
+        <div class={classes!("connection", state)} data-test="connection" data-state={state}>
+            { shape.draw() }
+            <span>{ words }</span>
+            if waits {
+                <button type="button" class="quiet-button" {onclick}>{ tr!("link.try_now") }</button>
+            }
+        </div>
+    }
+}
+
+fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
+    match link {
+        Link::Connecting => ("connecting", Shape::Half, tr!("link.connecting")),
+        Link::Online { latency_ms: None } => ("online", Shape::Dot, tr!("link.online")),
+        Link::Online { latency_ms: Some(ms) } => {
+            ("online", Shape::Dot, tr!("link.online_ms", ms = format!("{ms:.1}")))
+        }
+        Link::Lost { next_ms } => ("lost", Shape::Cross, tr!("link.lost", seconds = seconds(*next_ms))),
+        Link::None { next_ms } => ("none", Shape::Ring, tr!("link.none", seconds = seconds(*next_ms))),
+        Link::Foreign { protocol } => ("foreign", Shape::Cross, tr!("link.foreign", protocol = protocol)),
+    }
+}
+
+fn seconds(next_ms: f64) -> String {
+    format!("{:.0}", ((next_ms - browser::now_ms()) / 1_000.0).ceil().max(1.0))
+}

@@ -1,0 +1,126 @@
+//! The list of blocks, and what can be done with the chosen one.
+
+use std::rc::Rc;
+
+use cipdeck_shared::config::MsgCipGeneric;
+use web_sys::HtmlInputElement;
+use yew::prelude::*;
+use yew_router::prelude::*;
+
+use super::dialogs::{Asked, Dialogs};
+use crate::{
+    hooks::{use_draft, use_row, use_workbench},
+    i18n::tr,
+    kit::StateMark,
+    route::Route,
+    store::DeckId,
+};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct BlockListProps {
+    pub(super) ids: Rc<[DeckId]>,
+    #[prop_or_default]
+    pub(super) chosen: Option<DeckId>,
+}
+
+/// Buttons, filter, and one line per block.
+#[component]
+pub(super) fn BlockList(props: &BlockListProps) -> Html {
+    let bench = use_workbench();
+    let navigator = use_navigator();
+    let asked = use_state(|| None::<Asked>);
+    let filter = use_state(String::new);
+    let open = use_callback(navigator, |id: DeckId, navigator| {
+        if let Some(navigator) = navigator {
+            navigator.push(&Route::Block { id: id.to_string() });
+        }
+    });
+    let on_new = use_callback((bench.clone(), open.clone()), |_: MouseEvent, (bench, open)| {
+        open.emit(bench.add(MsgCipGeneric::product_name("0,0")));
+    });
+    let on_duplicate =
+        use_callback((bench.clone(), open.clone(), props.chosen), |_: MouseEvent, (bench, open, chosen)| {
+            if let Some(draft) = chosen.and_then(|id| bench.draft(id)) {
+                open.emit(bench.add(draft.config));
+            }
+        });
+    let ask = |question: fn(DeckId) -> Asked| {
+        let (asked, chosen) = (asked.clone(), props.chosen);
+        Callback::from(move |_: MouseEvent| asked.set(chosen.map(question)))
+    };
+    let on_paste = {
+        let asked = asked.clone();
+        Callback::from(move |_: MouseEvent| asked.set(Some(Asked::Paste)))
+    };
+    let on_answered = use_callback((asked.clone(), open), |added: Option<DeckId>, (asked, open)| {
+        asked.set(None);
+        if let Some(id) = added {
+            open.emit(id);
+        }
+    });
+    let oninput = use_callback(filter.clone(), |event: InputEvent, filter| {
+        filter.set(event.target_unchecked_into::<HtmlInputElement>().value());
+    });
+    let none = props.chosen.is_none();
+    let action = |test: &'static str, words: AttrValue, onclick: Callback<MouseEvent>, disabled: bool| {
+        html! {
+            <button type="button" class="tool" data-test={test} {onclick} {disabled}>{ words }</button>
+        }
+    };
+    html! {
+        <aside class="list" aria-label={tr!("list.label")}>
+            <button type="button" class="button wide" data-test="new-block" onclick={on_new}>{ tr!("list.new") }</button>
+            <div class="tools">
+                { action("duplicate", tr!("list.duplicate"), on_duplicate, none) }
+                { action("rename", tr!("list.rename"), ask(Asked::Rename), none) }
+                { action("copy", tr!("list.copy"), ask(Asked::Copy), none) }
+                { action("paste", tr!("list.paste"), on_paste, false) }
+                { action("delete", tr!("list.delete"), ask(Asked::Delete), none) }
+            </div>
+            <input
+                class="input filter" type="search" placeholder={tr!("list.filter")} aria-label={tr!("list.filter")}
+                value={(*filter).clone()} {oninput} data-test="filter"
+            />
+            <ul class="entries">
+                { for props.ids.iter().map(|id| html! {
+                    <Entry key={id.to_string()} id={*id} chosen={props.chosen == Some(*id)} filter={AttrValue::from((*filter).clone())} />
+                }) }
+            </ul>
+            if let Some(asked) = *asked {
+                <Dialogs {asked} {on_answered} />
+            }
+        </aside>
+    }
+}
+
+#[derive(Clone, PartialEq, Properties)]
+struct EntryProps {
+    id: DeckId,
+    chosen: bool,
+    filter: AttrValue,
+}
+
+/// One block: its state, its name, and whether it holds something that is not stored.
+#[component]
+fn Entry(props: &EntryProps) -> Html {
+    let bench = use_workbench();
+    let (row, draft) = (use_row(props.id), use_draft(props.id));
+    let Some(row) = row else { return html! {} };
+    let config = draft.as_ref().map_or(&*row.config, |draft| &draft.config);
+    let wanted = props.filter.trim().to_lowercase();
+    let found = |text: &str| text.to_lowercase().contains(&wanted);
+    if !found(&config.name) && !found(&config.target_cfg.path) {
+        return html! {};
+    }
+    html! {
+        <li class={classes!("entry", props.chosen.then_some("chosen"))} data-test="entry">
+            <Link<Route> to={Route::Block { id: props.id.to_string() }}>
+                <StateMark phase={row.status.phase} short=true />
+                <span class="entry-name">{ &config.name }</span>
+                if bench.is_unsaved(props.id) {
+                    <span class="entry-draft">{ tr!("list.unsaved") }</span>
+                }
+            </Link<Route>>
+        </li>
+    }
+}

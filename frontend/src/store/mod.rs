@@ -1,0 +1,13 @@
+//! What the page shows, kept outside the virtual DOM.
+
+mod deck_id;
+mod rows;
+mod trace;
+mod watch;
+
+pub use self::{
+    deck_id::{DeckId, NotAnId},
+    rows::{AskForFrame, Row, RowStore},
+    trace::Trace,
+    watch::{Watch, Watchers},
+};

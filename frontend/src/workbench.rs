@@ -1,0 +1,322 @@
+//! Everything the page can do with blocks: where a block runs, what is stored, what a person is asked.
+
+use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+
+use cipdeck_shared::{
+    api::{Problem, ProblemCode},
+    config::{Block, BlockId, MsgCipGeneric, Target},
+    engine::CommandError,
+    plan::MessagePlan,
+};
+use yew::{Callback, platform::spawn_local};
+
+use crate::{
+    demo::Demo,
+    editor::{Draft, DraftStore, Edit},
+    net::{Relay, rest},
+    notice::{Notice, NoticeStore},
+    store::{DeckId, RowStore},
+};
+
+/// A handle to the whole application. Clones are the same.
+#[derive(Clone)]
+pub struct Workbench(Rc<Parts>);
+
+struct Parts {
+    rows: RowStore,
+    drafts: DraftStore,
+    relay: Relay,
+    demo: Demo,
+    notices: NoticeStore,
+    moved: RefCell<BTreeMap<DeckId, DeckId>>,
+}
+
+/// Where a block would run now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the relay.
+    Relay,
+    /// In this browser, against the demo device.
+    Browser,
+    /// Nowhere: its device can be reached by a relay only, and there is none.
+    Nowhere,
+}
+
+impl Workbench {
+    /// Puts the parts together. Drafts that are not stored anywhere else become rows.
+    pub fn new(rows: RowStore, drafts: DraftStore, relay: Relay, notices: NoticeStore) -> Self {
+        for id in drafts.ids() {
+            if let (DeckId::New(_), Some(draft)) = (id, drafts.draft(id)) {
+                rows.put_new(id, Rc::new(draft.config.clone()));
+            }
+        }
+        let demo = Demo::new(rows.clone());
+        Self(Rc::new(Parts { rows, drafts, relay, demo, notices, moved: RefCell::default() }))
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &RowStore {
+        &self.0.rows
+    }
+
+    /// The drafts.
+    pub fn drafts(&self) -> &DraftStore {
+        &self.0.drafts
+    }
+
+    /// The connection.
+    pub fn relay(&self) -> &Relay {
+        &self.0.relay
+    }
+
+    /// What went wrong lately.
+    pub fn notices(&self) -> &NoticeStore {
+        &self.0.notices
+    }
+
+    /// Where an entry is now that has been stored under another id.
+    pub fn moved(&self, id: DeckId) -> Option<DeckId> {
+        self.0.moved.borrow().get(&id).copied()
+    }
+
+    /// Where a message would be sent from now.
+    pub fn place(&self, target: Option<&Target>) -> Place {
+        match target {
+            _ if self.0.relay.is_online() => Place::Relay,
+            Some(Target::BuiltIn) => Place::Browser,
+            _ => Place::Nowhere,
+        }
+    }
+
+    /// The draft of an entry, or one of what is stored.
+    pub fn draft(&self, id: DeckId) -> Option<Draft> {
+        let row = self.0.rows.row(id)?;
+        let stored = || Draft::new((*row.config).clone(), id.stored().map(|_| row.revision));
+        Some(self.0.drafts.draft(id).map_or_else(stored, |draft| (*draft).clone()))
+    }
+
+    /// Adds a block that is not stored yet; its name is made unique.
+    pub fn add(&self, mut config: MsgCipGeneric) -> DeckId {
+        config.name = self.unique_name(&config.name);
+        let id = self.0.drafts.next_new();
+        self.0.rows.put_new(id, Rc::new(config.clone()));
+        self.0.drafts.put(id, Draft::new(config, None));
+        id
+    }
+
+    /// Changes a draft.
+    pub fn edit(&self, id: DeckId, edit: Edit) {
+        let Some(mut draft) = self.draft(id) else { return };
+        draft.edit(edit);
+        self.keep(id, draft);
+    }
+
+    /// Gives up what was changed.
+    pub fn revert(&self, id: DeckId) {
+        self.0.notices.clear(id);
+        self.0.drafts.discard(id);
+    }
+
+    /// Whether an entry holds something that is not stored.
+    pub fn is_unsaved(&self, id: DeckId) -> bool {
+        let (row, draft) = (self.0.rows.row(id), self.0.drafts.draft(id));
+        id.stored().is_none() || row.zip(draft).is_some_and(|(row, draft)| draft.differs_from(&row.config))
+    }
+
+    /// Stores an entry.
+    pub fn save(&self, id: DeckId) {
+        let bench = self.clone();
+        spawn_local(async move {
+            // A refusal is shown where the entry is.
+            let _ = bench.store(id).await;
+        });
+    }
+
+    /// Stores the draft over whatever the relay has now.
+    pub fn save_over(&self, id: DeckId, current: &Block) {
+        let Some(mut draft) = self.draft(id) else { return };
+        draft.revision = Some(current.revision);
+        self.0.rows.put_stored(current.clone());
+        self.keep(id, draft);
+        self.save(id);
+    }
+
+    /// Runs an entry once. `seen` is the revision of a write that a person has seen and confirmed.
+    pub fn run(&self, id: DeckId, seen: Option<u64>) {
+        self.start(id, seen, Relay::run, Demo::run);
+    }
+
+    /// Sets IN. `seen` as for [`Self::run`].
+    pub fn set_in(&self, id: DeckId, input: bool, seen: Option<u64>) {
+        if input {
+            let command =
+                |relay: &Relay, block, confirm, refused| relay.set_in(block, true, confirm, refused);
+            return self.start(id, seen, command, Demo::start);
+        }
+        self.end(id, |relay, block, refused| relay.set_in(block, false, None, refused), Demo::stop);
+    }
+
+    /// Cancels what is running.
+    pub fn cancel(&self, id: DeckId) {
+        self.end(id, Relay::cancel, Demo::cancel);
+    }
+
+    /// Deletes an entry.
+    pub fn delete(&self, id: DeckId) {
+        let (DeckId::Stored(block), Some(row)) = (id, self.0.rows.row(id)) else { return self.forget(id) };
+        let bench = self.clone();
+        spawn_local(async move {
+            match rest::delete(block, row.revision).await {
+                Ok(()) => bench.forget(id),
+                Err(problem) if problem.code == ProblemCode::NotFound => bench.forget(id),
+                Err(problem) => bench.0.notices.put(id, Notice::Problem(Rc::new(problem))),
+            }
+        });
+    }
+
+    fn start(
+        &self,
+        id: DeckId,
+        seen: Option<u64>,
+        command: impl FnOnce(&Relay, BlockId, Option<u64>, Callback<Problem>) + 'static,
+        demo: impl FnOnce(&Demo, DeckId, MessagePlan, bool) -> Result<(), CommandError>,
+    ) {
+        self.0.notices.clear(id);
+        let Some((Some(plan), _)) = self.draft(id).map(|draft| draft.check()) else { return };
+        match self.place(Some(plan.target())) {
+            Place::Relay => {
+                let bench = self.clone();
+                spawn_local(async move {
+                    let unsaved = bench.is_unsaved(id);
+                    let Some((block, revision)) = bench.store(id).await else { return };
+                    // What was just stored is what the person saw; otherwise the revision of the dialog counts.
+                    let confirm = seen.map(|seen| if unsaved { revision } else { seen });
+                    command(&bench.0.relay, block, confirm, bench.refused(DeckId::Stored(block)));
+                });
+            }
+            Place::Browser => self.answer(id, demo(&self.0.demo, id, plan, seen.is_some())),
+            Place::Nowhere => {}
+        }
+    }
+
+    fn end(
+        &self,
+        id: DeckId,
+        command: impl FnOnce(&Relay, BlockId, Callback<Problem>),
+        demo: impl FnOnce(&Demo, DeckId) -> Result<(), CommandError>,
+    ) {
+        match id {
+            DeckId::Stored(block) if self.0.relay.is_online() => {
+                command(&self.0.relay, block, self.refused(id));
+            }
+            _ => self.answer(id, demo(&self.0.demo, id)),
+        }
+    }
+
+    fn answer(&self, id: DeckId, result: Result<(), CommandError>) {
+        if let Err(CommandError::Busy) = result {
+            let problem = rest::unreachable(rust_i18n::t!("problem.busy").into_owned());
+            self.0.notices.put(id, Notice::Problem(Rc::new(Problem { code: ProblemCode::Busy, ..problem })));
+        }
+    }
+
+    fn refused(&self, id: DeckId) -> Callback<Problem> {
+        let notices = self.0.notices.clone();
+        Callback::from(move |problem| notices.put(id, Notice::Problem(Rc::new(problem))))
+    }
+
+    /// Stores an entry if there is something to store: its id and revision in the relay, or `None` and a notice.
+    async fn store(&self, id: DeckId) -> Option<(BlockId, u64)> {
+        self.0.notices.clear(id);
+        let draft = self.draft(id)?;
+        let stored = match id {
+            DeckId::Stored(block) if !self.is_unsaved(id) => {
+                let revision = self.0.rows.row(id)?.revision;
+                return Some((block, revision));
+            }
+            DeckId::Stored(block) => {
+                let revision = draft.revision.unwrap_or_default();
+                rest::replace(&Block { id: block, revision, config: draft.config.clone() }).await
+            }
+            DeckId::New(_) => rest::create(&draft.config).await,
+        };
+        match stored {
+            Ok(block) => {
+                let place = (block.id, block.revision);
+                self.stored(id, block, &draft);
+                Some(place)
+            }
+            Err(problem) => {
+                self.not_stored(id, problem);
+                None
+            }
+        }
+    }
+
+    fn stored(&self, id: DeckId, block: Block, sent: &Draft) {
+        let to = DeckId::Stored(block.id);
+        let revision = block.revision;
+        self.0.rows.put_stored(block);
+        // Somebody may have typed on while it was being stored.
+        let newer = self.0.drafts.draft(id).filter(|draft| **draft != *sent);
+        self.0.drafts.discard(id);
+        if let Some(newer) = newer {
+            let mut newer = (*newer).clone();
+            newer.revision = Some(revision);
+            self.0.drafts.put(to, newer);
+        }
+        if id != to {
+            self.0.moved.borrow_mut().insert(id, to);
+            self.0.demo.remove(id);
+            self.0.rows.remove(id);
+        }
+    }
+
+    fn not_stored(&self, id: DeckId, problem: Problem) {
+        if let (Some(findings), Some(mut draft)) = (&problem.findings, self.draft(id)) {
+            draft.refuse(findings.clone());
+            self.keep(id, draft);
+        }
+        let notice = match problem.current.clone() {
+            Some(current) => Notice::Conflict(Rc::new(current)),
+            None => Notice::Problem(Rc::new(problem)),
+        };
+        self.0.notices.put(id, notice);
+    }
+
+    fn keep(&self, id: DeckId, draft: Draft) {
+        if id.stored().is_none() {
+            self.0.rows.put_new(id, Rc::new(draft.config.clone()));
+        }
+        self.0.drafts.put(id, draft);
+    }
+
+    fn forget(&self, id: DeckId) {
+        self.0.notices.clear(id);
+        self.0.demo.remove(id);
+        self.0.drafts.discard(id);
+        self.0.rows.remove(id);
+    }
+
+    fn unique_name(&self, name: &str) -> String {
+        let ids = self.0.rows.ids();
+        let taken: Vec<_> = ids.iter().filter_map(|id| Some(self.draft(*id)?.config.name)).collect();
+        let numbered = (2..).map(|number| format!("{name}-{number}"));
+        std::iter::once(name.to_owned())
+            .chain(numbered)
+            .find(|name| !taken.contains(name))
+            .unwrap_or_default()
+    }
+}
+
+impl PartialEq for Workbench {
+    fn eq(&self, other: &Self) -> bool {
+        Rc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl fmt::Debug for Workbench {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Workbench({:?}, {:?})", self.0.rows, self.0.relay)
+    }
+}
