@@ -1,5 +1,6 @@
 //! Nothing is written to a device that nobody has confirmed, and what is written is written once.
 
+use cipdeck_tests::PATIENCE;
 use cipdeck_tests::block::{self, with};
 use cipdeck_tests::fake_plc::{self, Act, FakePlc};
 use cipdeck_tests::frame::{REGISTER_SESSION, SEND_RR_DATA, encapsulate};
@@ -65,6 +66,29 @@ async fn a_change_after_the_confirmation_asks_again() {
 }
 
 #[tokio::test]
+async fn a_cyclic_read_that_is_changed_into_a_write_stops_there() {
+    let relay = Relay::start().await;
+    let plc = FakePlc::start(fake_plc::answering(&[])).await;
+    let cyclic = |block: Value| with(block, "/CtrlCfg", json!({ "TriggerType": 50 }));
+    let id = relay.rest.create(&cyclic(block::get(&plc.path(), 4, 150, 3))).await;
+    let mut viewer = relay.viewer().await;
+    viewer.set_in(&id, true).await;
+    viewer.status_where("it reads", PATIENCE, &id, |status| status["runs"].as_u64() >= Some(3)).await;
+
+    let write = with(cyclic(block::set(&plc.path(), 4, 150, 3, "01")), "/revision", 1);
+    let reply = relay.rest.put(&format!("blocks/{id}"), &write).await;
+    assert_eq!(reply.status, 200, "{reply:?}");
+    let refused = |status: &Value| status["cause"]["what"] == "not_permitted";
+    let status = viewer.status_where("nobody has confirmed it", PATIENCE, &id, refused).await;
+    assert_eq!((&status["phase"], &status["Status"]["ErrorID"]), (&json!("failed"), &json!(217)), "{status}");
+    let runs = status["runs"].as_u64();
+    viewer
+        .status_where("it is asked every time", PATIENCE, &id, |status| status["runs"].as_u64() > runs)
+        .await;
+    assert!(plc.messages().iter().all(|message| message[0] == 14), "only reads have arrived");
+}
+
+#[tokio::test]
 async fn a_write_without_an_answer_is_not_sent_again() {
     let relay = Relay::start().await;
     for (name, act) in [("silent", vec![]), ("closed", vec![Act::Close])] {
@@ -110,7 +134,7 @@ async fn taking_back_in_needs_no_confirmation() {
     assert_eq!((reply.status, &reply.body["IN"]), (200, &json!(true)), "{reply:?}");
     let mut viewer = relay.viewer().await;
     let cycles = |status: &Value| status["runs"].as_u64() >= Some(3);
-    viewer.status_where("a confirmed cyclic write goes on", cipdeck_tests::PATIENCE, &id, cycles).await;
+    viewer.status_where("a confirmed cyclic write goes on", PATIENCE, &id, cycles).await;
     let reply = relay.rest.post(&path, &json!({ "IN": false })).await;
     assert_eq!((reply.status, &reply.body["IN"]), (200, &json!(false)), "{reply:?}");
 }
