@@ -34,7 +34,7 @@ pub(crate) enum ApiError {
     /// The configuration has errors; nothing was stored.
     #[error("the configuration has errors; nothing was stored")]
     Findings(Vec<Finding>),
-    /// The relay is stopping, or the block was deleted while it ran.
+    /// The relay is stopping.
     #[error("{0}")]
     Unavailable(String),
     /// Our fault. The log has more.

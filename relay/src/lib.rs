@@ -33,7 +33,7 @@ pub use self::error::RunError;
 pub use self::settings::Settings;
 use self::store::Store;
 
-/// How long requests that are being answered have after everything else has ended.
+/// How long viewers have to hear the end, and requests that are being answered after everything else has ended.
 const LAST_ANSWERS: Duration = Duration::from_secs(3);
 
 /// Serves on a listener that is already bound, until `shutdown` is ready; then stops in order: viewers, running
@@ -81,7 +81,9 @@ pub(crate) async fn serve(
     };
     stop.cancel();
     viewers.close();
-    viewers.wait().await;
+    if tokio::time::timeout(LAST_ANSWERS, viewers.wait()).await.is_err() {
+        tracing::info!("some viewers did not take their last message");
+    }
     blocks.stop().await;
     match ended {
         Some(_) => Err(RunError::Stopped),

@@ -57,8 +57,8 @@ pub(crate) enum Refused {
     /// It may write and has not been confirmed.
     #[error("{0}")]
     NotPermitted(Denied),
-    /// The relay is stopping, or the block was deleted while it ran.
-    #[error("the relay is stopping, or the block has been deleted")]
+    /// Nothing is started any more.
+    #[error("the relay is stopping")]
     Unavailable,
 }
 
@@ -230,6 +230,8 @@ impl Inner {
             Event::Wants(wants) => self.ask(&wants, state, now),
             Event::Changed { block, view } => self.observer.changed(block, &view),
             Event::Finished { block, shot, view, exchange } => {
+                let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
+                tracing::debug!(%block, shot, error_id, sub_error_id, elapsed_us = view.elapsed_us, "ended");
                 let status = self.observer.finished(block, &view, &exchange);
                 if let Some(run) = state.runs.remove(&(block, shot)) {
                     // Nobody may wait any more.
@@ -259,7 +261,11 @@ impl State {
         self.grants.command(block, confirm).map_err(|denied| match denied {
             Denied::Unknown => Refused::UnknownBlock,
             denied => Refused::NotPermitted(denied),
-        })
+        })?;
+        if let Some(revision) = confirm {
+            tracing::info!(%block, revision, "confirmed by a person");
+        }
+        Ok(())
     }
 }
 
