@@ -80,15 +80,14 @@ impl Checks {
             .enumerate()
             .map(|(index, id)| self.number(Field::MemberId(index), *id, 0, 65_535))
             .collect();
-        if cfg.member_id.len() != 3 {
+        let three = cfg.member_id.len() == 3;
+        if !three {
             self.error(Field::MemberIds, Rule::MemberIdCount { found: cfg.member_id.len() });
-            return None;
         }
         let count = self.number::<u8>(Field::MemberCnt, cfg.member_cnt, 0, 3)?;
-        ids.into_iter().collect::<Option<Vec<u16>>>().map(|mut ids| {
-            ids.truncate(count.into());
-            ids
-        })
+        let mut ids = ids.into_iter().collect::<Option<Vec<u16>>>().filter(|_| three)?;
+        ids.truncate(count.into());
+        Some(ids)
     }
 
     pub(super) fn target_cfg(&mut self, cfg: &CipTargetCfg) -> Option<(Target, u32)> {
@@ -148,16 +147,14 @@ impl Checks {
                 None
             }
         };
-        let length = match config.req_length {
-            Some(length) => Some(self.number::<u16>(Field::ReqLength, length, 0, 490)?),
-            None => None,
-        };
+        let length = config.req_length.map(|length| self.number::<u16>(Field::ReqLength, length, 0, 490));
         let mut data = data?;
         if data.len() > MAX_REQUEST_DATA {
             self.error(Field::ReqData, Rule::TooMuchData { length: data.len(), max: MAX_REQUEST_DATA });
             return None;
         }
-        let Some(sent) = length.map(usize::from) else { return Some(data) };
+        let Some(sent) = length else { return Some(data) };
+        let sent = usize::from(sent?);
         if sent > data.len() {
             self.error(Field::ReqLength, Rule::LengthOverData { length: data.len() });
             return None;

@@ -90,6 +90,18 @@ fn all_findings_come_at_once() {
 }
 
 #[test]
+fn one_finding_never_hides_another() {
+    let all = findings(|config| {
+        config.req_data = "00".repeat(491);
+        config.req_length = Some(491);
+        config.app_cfg.member_id = alloc::vec![0; 2];
+        config.app_cfg.member_cnt = 4;
+    });
+    let fields: Vec<_> = all.iter().map(|(field, ..)| field.as_str()).collect();
+    assert_eq!(fields, ["AppCfg.MemberId", "AppCfg.MemberCnt", "ReqLength", "ReqData"]);
+}
+
+#[test]
 fn errors_carry_the_numbers_of_the_controller() {
     type Change = fn(&mut MsgCipGeneric);
     type Ids = Option<(u16, Option<u16>)>;
