@@ -16,6 +16,8 @@ pub struct Buffers {
     limit: usize,
     granted: BTreeSet<BlockId>,
     waiting: VecDeque<BlockId>,
+    /// Buffers are being granted right now: who has failed at once is followed by the next one there.
+    pub(super) granting: bool,
 }
 
 impl Buffers {
@@ -30,7 +32,7 @@ impl Buffers {
     }
 
     const fn with_limit(limit: usize) -> Self {
-        Self { limit, granted: BTreeSet::new(), waiting: VecDeque::new() }
+        Self { limit, granted: BTreeSet::new(), waiting: VecDeque::new(), granting: false }
     }
 
     /// A message wants a buffer.

@@ -43,6 +43,8 @@ pub(super) struct Job {
 pub(super) enum Output {
     Connect(LinkId),
     Disconnect(LinkId),
+    /// The target closes the connection; [`Client::drop_closing`] is due then.
+    Closing(LinkId, Instant),
     Transmit(LinkId),
     Wants(Wants),
     Block(BlockId, Input),
@@ -83,12 +85,13 @@ enum Link {
     Connecting(LinkId),
     Registering(LinkId, Session),
     Ready(LinkId, Session),
-    Closing(LinkId, Instant),
+    Closing(LinkId),
 }
 
 #[derive(Debug)]
 struct Outstanding {
     job: Job,
+    context: SenderContext,
     /// The request's bytes have been handed out: never again for this job.
     written: bool,
 }
@@ -96,6 +99,7 @@ struct Outstanding {
 impl Client {
     pub(super) fn submit(&mut self, job: Job, cx: &mut Context<'_>) {
         self.last_used = cx.now;
+        cx.out.push_back(Output::Block(job.block, Input::BufferGranted));
         if matches!(self.link, Link::Connecting(_) | Link::Registering(..)) {
             cx.out.push_back(Output::Block(job.block, Input::ConnectStarted));
         }
@@ -143,10 +147,10 @@ impl Client {
         self.transmit.clear();
         self.asking = None;
         match self.outstanding.take() {
-            Some(Outstanding { job, written: true }) => {
+            Some(Outstanding { job, written: true, .. }) => {
                 cx.out.push_back(Output::Block(job.block, Input::Failed(Failure::Closed)));
             }
-            Some(Outstanding { job, written: false }) => self.queue.push_front(job),
+            Some(Outstanding { job, written: false, .. }) => self.queue.push_front(job),
             None => {}
         }
         if was_registering {
@@ -156,7 +160,7 @@ impl Client {
     }
 
     pub(super) fn permit(&mut self, wants: &Wants, allowed: bool, cx: &mut Context<'_>) {
-        let Link::Ready(id, session) = &mut self.link else { return };
+        let Link::Ready(id, session) = &self.link else { return };
         if *id != wants.link || self.asking != Some((wants.block, wants.shot)) {
             return;
         }
@@ -172,7 +176,7 @@ impl Client {
             self.next_context += 1;
             let context = SenderContext::from(self.next_context);
             session.send(message, context, timeout_s(&job.plan), &mut self.transmit);
-            self.outstanding = Some(Outstanding { job, written: false });
+            self.outstanding = Some(Outstanding { job, context, written: false });
             cx.out.push_back(Output::Transmit(*id));
         }
     }
@@ -184,6 +188,9 @@ impl Client {
         }
         if let Some(outstanding) = self.outstanding.as_mut().filter(|outstanding| !outstanding.written) {
             outstanding.written = true;
+            if let Link::Ready(_, session) = &mut self.link {
+                session.expect(outstanding.context);
+            }
             let block = outstanding.job.block;
             cx.out.push_back(Output::Wrote(block, self.transmit.clone()));
             cx.out.push_back(Output::Block(block, Input::Written));
@@ -284,26 +291,19 @@ impl Client {
         match core::mem::take(&mut self.link) {
             Link::Ready(id, session) => {
                 session.unregister(context, &mut self.transmit);
-                self.link = Link::Closing(id, cx.now + CLOSING_TIME);
+                self.link = Link::Closing(id);
                 cx.out.push_back(Output::Transmit(id));
+                cx.out.push_back(Output::Closing(id, cx.now + CLOSING_TIME));
             }
             Link::Connecting(id) | Link::Registering(id, _) => cx.out.push_back(Output::Disconnect(id)),
             link => self.link = link,
         }
     }
 
-    pub(super) fn handle_timeout(&mut self, cx: &mut Context<'_>) {
-        if let Link::Closing(_, deadline) = self.link
-            && cx.now >= deadline
-        {
+    /// The target has not closed the connection in its time.
+    pub(super) fn drop_closing(&mut self, cx: &mut Context<'_>) {
+        if let Link::Closing(_) = self.link {
             self.disconnect(cx);
-        }
-    }
-
-    pub(super) const fn poll_timeout(&self) -> Option<Instant> {
-        match self.link {
-            Link::Closing(_, deadline) => Some(deadline),
-            _ => None,
         }
     }
 
@@ -315,7 +315,7 @@ impl Client {
     pub(super) const fn link_id(&self) -> Option<LinkId> {
         match &self.link {
             Link::None => None,
-            Link::Connecting(id) | Link::Registering(id, _) | Link::Ready(id, _) | Link::Closing(id, _) => {
+            Link::Connecting(id) | Link::Registering(id, _) | Link::Ready(id, _) | Link::Closing(id) => {
                 Some(*id)
             }
         }
@@ -347,7 +347,7 @@ impl Client {
     fn advance(&mut self, cx: &mut Context<'_>) {
         let Some(job) = self.queue.front() else { return };
         match &self.link {
-            Link::None | Link::Closing(..) => {
+            Link::None | Link::Closing(_) => {
                 self.disconnect(cx);
                 *cx.next_link += 1;
                 let id = LinkId(*cx.next_link);

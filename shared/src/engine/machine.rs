@@ -32,6 +32,8 @@ pub struct Engine {
     clients: BTreeMap<Target, Client>,
     links: BTreeMap<LinkId, Target>,
     timers: BTreeSet<(Instant, BlockId)>,
+    /// Until when a target may close a connection itself. The time for that is always the same: the first is next.
+    closing: VecDeque<(Instant, LinkId)>,
     events: VecDeque<Event>,
     next_link: u64,
     next_shot: u64,
@@ -65,6 +67,7 @@ impl Engine {
             clients: BTreeMap::new(),
             links: BTreeMap::new(),
             timers: BTreeSet::new(),
+            closing: VecDeque::new(),
             events: VecDeque::new(),
             next_link: 0,
             next_shot: 0,
@@ -82,30 +85,31 @@ impl Engine {
     ) {
         let plan = plan.map(Arc::new).map_err(|findings| Invalid::new(&findings));
         let trigger = plan.as_ref().ok().map(|plan| plan.trigger());
-        match self.blocks.get_mut(&block) {
-            Some(entry) => {
-                entry.revision = revision;
-                entry.plan = plan;
-                if let Some(kind) = trigger {
-                    entry.trigger.change(kind, entry.block.phase().is_busy(), now);
-                }
-            }
-            None => {
-                self.blocks.insert(block, Entry::new(revision, plan));
-            }
+        let Some(entry) = self.blocks.get_mut(&block) else {
+            self.blocks.insert(block, Entry::new(revision, plan));
+            return;
+        };
+        entry.revision = revision;
+        let former = core::mem::replace(&mut entry.plan, plan);
+        // A run's IN is TRUE for its one message only.
+        if let Some(kind) = trigger.filter(|_| entry.block.input() && !entry.run_once) {
+            entry.trigger.change(kind, entry.block.phase().is_busy(), now);
         }
         self.rearm(block);
-        self.retire(now);
+        if let Ok(plan) = former {
+            self.retire(plan.target(), now);
+        }
     }
 
     /// Cancels a block and forgets it.
     pub fn remove(&mut self, block: BlockId, now: Instant) {
         self.step(block, Input::Cancel, now);
-        if let Some(entry) = self.blocks.remove(&block) {
-            entry.wake.map(|wake| self.timers.remove(&(wake, block)));
-        }
+        let Some(entry) = self.blocks.remove(&block) else { return };
+        entry.wake.map(|wake| self.timers.remove(&(wake, block)));
         self.exchanges.remove(&block);
-        self.retire(now);
+        if let Ok(plan) = entry.plan {
+            self.retire(plan.target(), now);
+        }
     }
 
     /// One message, whatever `TriggerType`: IN rises now and falls at the end. Returns the shot.
@@ -182,7 +186,9 @@ impl Engine {
     /// The target closed the TCP connection, or it broke.
     pub fn closed(&mut self, link: LinkId, now: Instant) {
         self.link(link, now, Client::closed);
-        self.links.remove(&link);
+        if let Some(target) = self.links.remove(&link) {
+            self.retire(&target, now);
+        }
     }
 
     /// Bytes from the socket.
@@ -203,7 +209,7 @@ impl Engine {
     /// When to call [`Self::handle_timeout`].
     pub fn poll_timeout(&self) -> Option<Instant> {
         let block = self.timers.first().map(|(at, _)| *at);
-        let closing = self.clients.values().filter_map(Client::poll_timeout).min();
+        let closing = self.closing.front().map(|(at, _)| *at);
         block.into_iter().chain(closing).min()
     }
 
@@ -214,11 +220,12 @@ impl Engine {
             self.cycle(block, now);
             self.rearm(block);
         }
-        let closing: Vec<_> =
-            self.clients.iter().filter(|(_, client)| client.poll_timeout().is_some()).collect();
-        let closing: Vec<_> = closing.into_iter().map(|(target, _)| target.clone()).collect();
-        for target in closing {
-            self.client(&target, now, Client::handle_timeout);
+        while let Some((_, link)) = self.closing.pop_front_if(|(at, _)| *at <= now) {
+            let target = self.links.get(&link).cloned();
+            self.link(link, now, Client::drop_closing);
+            if let Some(target) = target {
+                self.retire(&target, now);
+            }
         }
     }
 
@@ -321,6 +328,8 @@ impl Engine {
         let view = Box::new(entry.view());
         let run_once = core::mem::take(&mut entry.run_once);
         let active = entry.active.take();
+        let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
+        let changed_target = active.as_ref().is_some_and(|active| planned != Some(&active.target));
         let shot = active.as_ref().map_or(self.next_shot, |active| active.shot);
         let exchange = Box::new(self.exchanges.remove(&block).unwrap_or_default());
         self.events.push_back(Event::Finished { block, shot, view, exchange });
@@ -331,16 +340,22 @@ impl Engine {
             self.buffers(active.channel).release(block);
             self.client(&active.target, now, |client, cx| client.withdraw(block, cx));
             self.grant(active.channel, now);
+            if changed_target {
+                self.retire(&active.target, now);
+            }
         }
     }
 
     fn grant(&mut self, channel: Channel, now: Instant) {
+        if core::mem::replace(&mut self.buffers(channel).granting, true) {
+            return;
+        }
         let mut granted = false;
         while let Some(block) = self.buffers(channel).poll_grant() {
             granted = true;
-            self.step(block, Input::BufferGranted, now);
             self.submit(block, now);
         }
+        self.buffers(channel).granting = false;
         if granted {
             self.announce_positions(channel);
         }
@@ -360,6 +375,7 @@ impl Engine {
             resent: false,
         };
         if channel == Channel::Controller && !self.session_for_controller(&target, now) {
+            self.step(block, Input::BufferGranted, now);
             return self.step(block, Input::Failed(Failure::Limit), now);
         }
         self.clients.entry(target.clone()).or_default();
@@ -386,18 +402,17 @@ impl Engine {
         })
     }
 
-    /// Closes the sessions that no block needs any more.
-    fn retire(&mut self, now: Instant) {
-        let needed = |target: &Target| {
-            self.blocks.values().any(|entry| {
-                let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
-                planned == Some(target)
-                    || entry.active.as_ref().is_some_and(|active| active.target == *target)
-            })
-        };
-        let unused: Vec<_> = self.clients.keys().filter(|target| !needed(target)).cloned().collect();
-        for target in unused {
-            self.client(&target, now, Client::close);
+    /// Closes the session with a target that no block needs any more, and forgets it once it is closed.
+    fn retire(&mut self, target: &Target, now: Instant) {
+        let needed = self.blocks.values().any(|entry| {
+            let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
+            planned == Some(target) || entry.active.as_ref().is_some_and(|active| active.target == *target)
+        });
+        if !needed {
+            self.client(target, now, Client::close);
+            if self.clients.get(target).is_some_and(|client| client.link_id().is_none()) {
+                self.clients.remove(target);
+            }
         }
     }
 
@@ -482,6 +497,7 @@ impl Engine {
                 self.links.remove(&link);
                 self.events.push_back(Event::Disconnect { link });
             }
+            Output::Closing(link, until) => self.closing.push_back((until, link)),
             Output::Transmit(link) => self.events.push_back(Event::Transmit { link }),
             Output::Wants(wants) => self.events.push_back(Event::Wants(wants)),
             Output::Block(block, input) => self.step(block, input, now),
@@ -497,5 +513,33 @@ impl Engine {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::MsgCipGeneric;
+
+    #[test]
+    fn a_target_that_no_block_names_any_more_is_forgotten() {
+        const A: BlockId = BlockId(1);
+        let plan = |path: &str| MessagePlan::parse(&MsgCipGeneric::product_name(path)).0.ok_or_else(Vec::new);
+        let mut engine = Engine::new();
+        for round in 0..3 {
+            engine.put(A, 1, plan("4,10.0.0.1"), Instant(round));
+            engine.run(A, Instant(round)).unwrap();
+            let link = *engine.links.keys().next().unwrap();
+            match round {
+                0 => engine.connect_failed(link, ConnectError::Refused, "", Instant(round)),
+                1 => engine.connected(link, Instant(round)),
+                _ => engine.closed(link, Instant(round)),
+            }
+            engine.put(A, 2, plan("4,10.0.0.2"), Instant(round));
+            engine.cancel(A, Instant(round)).unwrap();
+            assert_eq!((engine.clients.len(), engine.links.len()), (0, 0), "round {round}");
+        }
+        engine.remove(A, Instant(9));
+        assert!(engine.timers.is_empty() && engine.exchanges.is_empty());
     }
 }

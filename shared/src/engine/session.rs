@@ -53,7 +53,7 @@ impl Session {
 
     /// Appends a request. `timeout_s` is the target's own time limit in seconds.
     pub(super) fn send(
-        &mut self,
+        &self,
         message: UnconnectedMessage<'_>,
         context: SenderContext,
         timeout_s: u16,
@@ -61,6 +61,10 @@ impl Session {
     ) {
         let header = Header::request(Command::SendRRData, self.handle.unwrap_or_default(), context);
         message.encode(&header, timeout_s, out);
+    }
+
+    /// The request with this context has been written. Contexts can be guessed: what comes earlier is no reply.
+    pub(super) const fn expect(&mut self, context: SenderContext) {
         self.expected = Some(context);
     }
 
@@ -74,13 +78,12 @@ impl Session {
     pub(super) fn receive(&mut self, bytes: &[u8]) {
         self.deframer.push(bytes);
         loop {
-            // A target that does not speak EtherNet/IP shows in the first header: do not wait for its "length".
-            if let Some(header) = self.deframer.peek_header()
-                && header.command.name().is_none()
+            // A target that does not speak EtherNet/IP shows in its first bytes: do not wait for its "length".
+            if let Some(command) = self.deframer.peek_command()
+                && command.name().is_none()
             {
-                let kind = DecodeErrorKind::Unexpected { field: "command", found: header.command.0.into() };
-                let error = DecodeError { at: 0, kind };
-                return self.received.push_back(Received::Malformed { error, frame: Vec::new() });
+                let kind = DecodeErrorKind::Unexpected { field: "command", found: command.0.into() };
+                return self.malformed(DecodeError { at: 0, kind });
             }
             match self.deframer.next_frame() {
                 Ok(Some(frame)) => {
@@ -102,11 +105,14 @@ impl Session {
                     }
                 }
                 Ok(None) => return,
-                Err(error) => {
-                    return self.received.push_back(Received::Malformed { error, frame: Vec::new() });
-                }
+                Err(error) => return self.malformed(error),
             }
         }
+    }
+
+    fn malformed(&mut self, error: DecodeError) {
+        let frame = self.deframer.pending_bytes().to_vec();
+        self.received.push_back(Received::Malformed { error, frame });
     }
 
     /// What came in, in order.

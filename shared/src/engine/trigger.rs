@@ -35,9 +35,9 @@ impl Trigger {
         }
     }
 
-    /// The type has changed while IN is TRUE.
+    /// The type has changed, or is there at last, while IN is TRUE.
     pub fn change(&mut self, kind: TriggerType, busy: bool, now: Instant) {
-        if self.kind.is_some_and(|old| old != kind) {
+        if self.kind != Some(kind) {
             self.start(kind, now);
             if !busy {
                 self.ended(now);

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::cursor::{DecodeError, DecodeErrorKind, Reader};
-use super::encapsulation::{Encapsulation, HEADER_SIZE, Header};
+use super::encapsulation::{Command, Encapsulation, HEADER_SIZE};
 
 /// Collects bytes until a frame is whole. After an error the stream cannot be resynchronised: drop it.
 #[derive(Debug, Default)]
@@ -43,10 +43,14 @@ impl Deframer {
         }
     }
 
-    /// The header of a frame that has begun, even if its data is still on the way.
-    pub fn peek_header(&self) -> Option<Header> {
-        let pending = self.buffer.get(self.used..)?;
-        Header::decode(&mut Reader::new(pending)).ok().map(|(header, _)| header)
+    /// The command of a frame that has begun, even if the rest is still on the way.
+    pub fn peek_command(&self) -> Option<Command> {
+        Reader::new(self.pending_bytes()).u16().ok().map(Command)
+    }
+
+    /// The bytes of an unfinished frame, or those that make no sense.
+    pub fn pending_bytes(&self) -> &[u8] {
+        self.buffer.get(self.used..).unwrap_or_default()
     }
 
     /// How many bytes of an unfinished frame are waiting.

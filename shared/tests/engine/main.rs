@@ -7,6 +7,7 @@
 mod any;
 mod owner;
 mod promises;
+mod rarely;
 
 #[cfg(target_arch = "wasm32")]
 wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_browser);

@@ -23,6 +23,8 @@ pub(crate) struct Owner {
     pub(crate) wants: Vec<Wants>,
     pub(crate) finished: Vec<(BlockId, BlockView, Exchange)>,
     pub(crate) bits: BTreeMap<BlockId, Vec<u16>>,
+    /// How each block looked when it was told last.
+    pub(crate) told: BTreeMap<BlockId, BlockView>,
 }
 
 impl Owner {
@@ -37,6 +39,7 @@ impl Owner {
             wants: Vec::new(),
             finished: Vec::new(),
             bits: BTreeMap::new(),
+            told: BTreeMap::new(),
         }
     }
 
@@ -77,6 +80,7 @@ impl Owner {
                 }
                 Event::Changed { block, view } => {
                     self.bits.entry(block).or_default().extend(view.edges.iter().map(|edge| edge.1.0));
+                    self.told.insert(block, *view);
                 }
                 Event::Finished { block, view, exchange, .. } => {
                     self.finished.push((block, *view, *exchange));
