@@ -18,6 +18,9 @@ pub struct HexViewProps {
     pub bytes: Rc<[u8]>,
     /// Their parts, from `dissect`.
     pub tree: Rc<Node>,
+    /// Says how to see what a byte is, while none is chosen.
+    #[prop_or_default]
+    pub hint: bool,
     /// For tests of the product.
     #[prop_or_default]
     pub test: Option<AttrValue>,
@@ -55,7 +58,7 @@ pub fn HexView(props: &HexViewProps) -> Html {
                     <span class="explanation-at">{ leaf.place() }</span>
                     <b>{ &leaf.name }</b>
                     <span>{ &leaf.text }</span>
-                } else {
+                } else if props.hint {
                     <span class="quiet">{ tr!("bytes.point") }</span>
                 }
             </p>

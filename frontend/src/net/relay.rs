@@ -35,10 +35,12 @@ pub enum Link {
         /// Milliseconds.
         latency_ms: Option<f64>,
     },
-    /// Lost. The next try is due at this time of [`browser::now_ms`].
+    /// Lost. Both times are of [`browser::now_ms`].
     Lost {
-        /// Milliseconds.
+        /// When the next try is due, in milliseconds.
         next_ms: f64,
+        /// When it was lost, in milliseconds.
+        since_ms: f64,
     },
     /// There has never been a relay behind this page.
     None {
@@ -67,6 +69,7 @@ struct Inner {
     last_command: Cell<u64>,
     link: RefCell<Link>,
     has_snapshot: Cell<bool>,
+    lost_ms: Cell<f64>,
     watchers: Watchers,
     spent: Callback<f64>,
 }
@@ -85,6 +88,7 @@ impl Relay {
             last_command: Cell::default(),
             link: RefCell::new(Link::Connecting),
             has_snapshot: Cell::default(),
+            lost_ms: Cell::default(),
             watchers: Watchers::default(),
             spent,
         }))
@@ -181,7 +185,9 @@ impl Relay {
         let old = self.0.socket.take();
         spawn_local(async move { drop(old) });
         self.0.probe.take();
-        self.0.has_snapshot.set(false);
+        if self.0.has_snapshot.replace(false) {
+            self.0.lost_ms.set(browser::now_ms());
+        }
         *self.0.sequence.borrow_mut() = Sequence::default();
         let pending = std::mem::take(&mut *self.0.pending.borrow_mut());
         for refused in pending.into_values() {
@@ -195,7 +201,11 @@ impl Relay {
         self.0.wait.replace(Some(Timeout::new(ms, move || relay.input(Input::Due))));
         let next_ms = browser::now_ms() + f64::from(ms);
         let known = self.0.machine.borrow().was_online();
-        self.show(if known { Link::Lost { next_ms } } else { Link::None { next_ms } });
+        self.show(if known {
+            Link::Lost { next_ms, since_ms: self.0.lost_ms.get() }
+        } else {
+            Link::None { next_ms }
+        });
     }
 
     fn hear(&self, text: &str) {

@@ -8,6 +8,7 @@ use crate::{
     i18n::tr,
     kit::Shape,
     net::Link,
+    pages::block::age_words,
 };
 
 /// Word, shape and colour of the connection; a button to try now.
@@ -30,6 +31,35 @@ pub fn Connection() -> Html {
     }
 }
 
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct StaleNoteProps {
+    /// What is shown comes from the relay.
+    #[prop_or(true)]
+    pub(super) stored: bool,
+}
+
+/// Says that what is shown is not live, and since when.
+#[component]
+pub(super) fn StaleNote(props: &StaleNoteProps) -> Html {
+    let link = use_link();
+    match link {
+        Link::Lost { since_ms, .. } if props.stored => html! { <Stale {since_ms} /> },
+        _ => html! {},
+    }
+}
+
+#[derive(Clone, PartialEq, Properties)]
+struct StaleProps {
+    since_ms: f64,
+}
+
+#[component]
+fn Stale(props: &StaleProps) -> Html {
+    use_second(true);
+    let age = age_words((browser::now_ms() - props.since_ms) / 1_000.0);
+    html! { <p class="warning-text" data-test="stale">{ tr!("link.stale", age = age) }</p> }
+}
+
 fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
     match link {
         Link::Connecting => ("connecting", Shape::Half, tr!("link.connecting")),
@@ -37,7 +67,7 @@ fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
         Link::Online { latency_ms: Some(ms) } => {
             ("online", Shape::Dot, tr!("link.online_ms", ms = format!("{ms:.1}")))
         }
-        Link::Lost { next_ms } => ("lost", Shape::Cross, tr!("link.lost", seconds = seconds(*next_ms))),
+        Link::Lost { next_ms, .. } => ("lost", Shape::Cross, tr!("link.lost", seconds = seconds(*next_ms))),
         Link::None { next_ms } => ("none", Shape::Ring, tr!("link.none", seconds = seconds(*next_ms))),
         Link::Foreign { protocol } => ("foreign", Shape::Cross, tr!("link.foreign", protocol = protocol)),
     }

@@ -8,6 +8,6 @@ mod watch;
 pub use self::{
     deck_id::{DeckId, NotAnId},
     rows::{AskForFrame, Row, RowStore},
-    trace::Trace,
+    trace::{Edge, Trace},
     watch::{Watch, Watchers},
 };

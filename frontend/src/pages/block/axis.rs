@@ -5,17 +5,22 @@ use std::{fmt::Write, rc::Rc};
 use cipdeck_shared::engine::StatusBits;
 use yew::prelude::*;
 
-use crate::{i18n::tr, store::Trace};
+use crate::{
+    i18n::tr,
+    store::{Edge, Trace},
+};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct AxisProps {
     pub(super) trace: Rc<Trace>,
+    /// The block runs again and again.
+    pub(super) repeats: bool,
 }
 
 /// The diagram of the newest run; its text alternative names every edge.
 #[component]
 pub(super) fn Axis(props: &AxisProps) -> Html {
-    let edges = props.trace.edges();
+    let edges = if props.repeats { props.trace.steady() } else { props.trace.newest() };
     if edges.is_empty() {
         return html! { <p class="axis-empty quiet">{ tr!("axis.empty") }</p> };
     }
@@ -53,7 +58,7 @@ fn tick(column: usize, time: u64, columns: usize, bottom: i32) -> Html {
     </> }
 }
 
-fn draw_lane(lane: usize, bit: u16, name: &'static str, edges: &[(u64, StatusBits)]) -> Html {
+fn draw_lane(lane: usize, bit: u16, name: &'static str, edges: &[Edge]) -> Html {
     let low = TOP + LANE * i32::try_from(lane + 1).unwrap_or(1) - 4;
     let level = |bits: StatusBits| if bits.has(bit) { low - LANE + 6 } else { low };
     let mut path = String::new();
@@ -70,8 +75,8 @@ fn draw_lane(lane: usize, bit: u16, name: &'static str, edges: &[(u64, StatusBit
     </> }
 }
 
-fn spoken(edges: &[(u64, StatusBits)]) -> String {
-    let edge = |(time, bits): &(u64, StatusBits)| {
+fn spoken(edges: &[Edge]) -> String {
+    let edge = |(time, bits): &Edge| {
         let names: Vec<_> =
             StatusBits::NAMES.iter().filter(|(bit, _)| bits.has(*bit)).map(|(_, name)| *name).collect();
         format!("{}: {}", duration(*time), if names.is_empty() { "–".to_owned() } else { names.join(" ") })

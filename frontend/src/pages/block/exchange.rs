@@ -34,10 +34,10 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
         Some((Rc::<[u8]>::from(reply), Rc::new(tree)))
     });
     html! {
-        <div class="bytes">
+        <>
             <h2>{ tr!("bytes.request") }<span class="count">{ count(request_view.as_ref().as_ref().map(|(bytes, _)| bytes.len())) }</span></h2>
             if let Some((bytes, tree)) = &*request_view {
-                <HexView label={tr!("bytes.request")} bytes={bytes.clone()} tree={tree.clone()} test="request-bytes" />
+                <HexView label={tr!("bytes.request")} bytes={bytes.clone()} tree={tree.clone()} hint=true test="request-bytes" />
             } else {
                 <p class="quiet">{ tr!("bytes.no_request") }</p>
             }
@@ -47,7 +47,7 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
             } else {
                 <p class="quiet">{ if props.exchange.is_some() { tr!("bytes.unanswered") } else { tr!("bytes.no_reply") } }</p>
             }
-        </div>
+        </>
     }
 }
 

@@ -24,7 +24,9 @@ use self::{
 };
 use crate::{
     hooks::{use_draft, use_link, use_row, use_workbench},
+    i18n::tr,
     kit::{Bits, StateMark},
+    pages::connection::StaleNote,
     store::DeckId,
 };
 
@@ -57,9 +59,11 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
     });
     let Some((row, subject)) = row.zip((*subject).clone()) else { return html! {} };
     let subject = Rc::new(subject);
+    let repeats = row.status.input && row.config.ctrl_cfg.trigger_type != 0;
     let edit = Callback::from(move |edit| bench.edit(id, edit));
     html! {
         <article class="block" aria-label={subject.draft.config.name.clone()}>
+            <h1 class="unseen">{ &subject.draft.config.name }</h1>
             <Head subject={subject.clone()} status={row.status.clone()} edit={edit.clone()} />
             <NoticeBar {id} subject={subject.clone()} />
             <Form subject={subject.clone()} {edit} />
@@ -68,12 +72,16 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
                     <StateMark phase={row.status.phase} />
                     <Bits bits={row.status.status.status_bits} />
                 </div>
+                if row.status.position > 0 {
+                    <p class="hint" data-test="position">{ tr!("run.position", position = row.status.position) }</p>
+                }
+                <StaleNote stored={id.stored().is_some()} />
                 <Drawing subject={subject.clone()} status={row.status.clone()} />
-                <Axis trace={row.trace.clone()} />
-            </section>
-            <section class="message">
-                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} />
+                <Axis trace={row.trace.clone()} {repeats} />
                 <Outcome row={row.clone()} />
+            </section>
+            <section class="bytes" aria-label={tr!("bytes.label")}>
+                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} />
             </section>
         </article>
     }

@@ -26,34 +26,34 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
     let row = &props.row;
     let status = &row.status;
     use_second(status.last.is_some());
-    let shown = if status.q {
-        Some(status.res_data.clone())
-    } else {
-        status.last.as_ref().map(|last| last.res_data.clone())
-    };
+    let shown = status.last.as_ref().map(|last| last.res_data.clone());
     let request = request_of(row);
     let values = use_memo((request, shown), |(request, data)| decode(request.as_deref(), data.as_deref()));
     html! {
-        <div class="outcome" aria-live="off">
+        <div class="outcome">
             <h2>
                 { tr!("outcome.title") }
-                if let Some(us) = status.reply_us {
-                    <span class="count">{ tr!("outcome.reply_time", time = duration(us)) }</span>
-                }
+                <span class="count">
+                    { match (status.phase.is_busy(), status.reply_us) {
+                        (true, _) => tr!("outcome.busy"),
+                        (false, Some(us)) => tr!("outcome.reply_time", time = duration(us)),
+                        (false, None) => AttrValue::default(),
+                    } }
+                </span>
             </h2>
-            { match status.phase {
-                Phase::Idle if status.last.is_none() => html! { <p class="quiet">{ tr!("outcome.never") }</p> },
-                Phase::Failed => html! { <Trouble status={status.clone()} /> },
-                phase if phase.is_busy() => html! { <p class="quiet" role="status">{ tr!("outcome.busy") }</p> },
-                _ => html! {},
-            } }
-            if status.q {
-                { decoded(&values) }
-            } else if let Some(last) = &status.last {
-                <div class="last">
-                    <h3>{ tr!("outcome.last") }<span class="age" data-test="last-age">{ age(last) }</span></h3>
+            if status.phase == Phase::Failed {
+                <Trouble status={status.clone()} />
+            }
+            if let Some(last) = &status.last {
+                <div class={classes!("good", (!status.q).then_some("stale"))}>
+                    <h3>
+                        { if status.q { tr!("outcome.value") } else { tr!("outcome.last") } }
+                        <span class="age" data-test="last-age">{ age(last) }</span>
+                    </h3>
                     { decoded(&values) }
                 </div>
+            } else if status.phase == Phase::Idle {
+                <p class="quiet">{ tr!("outcome.never") }</p>
             }
         </div>
     }

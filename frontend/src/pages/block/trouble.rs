@@ -29,7 +29,7 @@ pub(super) fn Trouble(props: &TroubleProps) -> Html {
     let tries = try_text(&format!("try.{key}"));
     let hints: Vec<_> = entries.iter().map(|entry| entry.hint).filter(|hint| !hint.is_empty()).collect();
     html! {
-        <div class="trouble" role="alert" data-test="error">
+        <div class="trouble" data-test="error">
             <p class="trouble-title">
                 <span class="trouble-codes mono" data-test="error-codes">{ numbers(&props.status) }</span>
                 <b data-test="error-name">{ entries.first().map_or("", |entry| entry.name) }</b>

@@ -36,7 +36,8 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
         }
     });
     let on_new = use_callback((bench.clone(), open.clone()), |_: MouseEvent, (bench, open)| {
-        open.emit(bench.add(MsgCipGeneric::product_name("0,0")));
+        let name = rust_i18n::t!("list.new_name").into_owned();
+        open.emit(bench.add(MsgCipGeneric { name, ..MsgCipGeneric::product_name("0,0") }));
     });
     let on_duplicate =
         use_callback((bench.clone(), open.clone(), props.chosen), |_: MouseEvent, (bench, open, chosen)| {

@@ -13,6 +13,7 @@ use crate::{
     hooks::{use_ids, use_workbench},
     i18n::tr,
     kit::WindowTable,
+    pages::connection::StaleNote,
     store::{DeckId, RowStore},
 };
 
@@ -56,6 +57,7 @@ pub fn MonitorPage() -> Html {
                     value={(*filter).clone()} {oninput} data-test="monitor-filter"
                 />
             </div>
+            <StaleNote />
             if shown.is_empty() {
                 <p class="empty">{ tr!("monitor.empty") }</p>
             } else {
