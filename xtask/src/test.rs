@@ -25,7 +25,10 @@ pub(crate) fn all(report: &mut Report, preference: Preference, long: bool) -> Re
     report.step("tests: xtask (native)", || run(cargo().args(["test", "-p", "xtask"])))?;
     report.step("tests: shared (wasm32, in the browser)", || shared_as_wasm(&wasm, &tools))?;
     report.step("tests: page (wasm-pack, in the browser)", || components(&wasm, &tools))?;
-    report.step("relay: build cipdeck", || run(cargo().args(["build", "-p", "cipdeck-relay"])))?;
+    report.step("relay: build cipdeck", || {
+        // Together with the tests that start it: both then share one build of their dependencies.
+        run(cargo().args(["build", "-p", "cipdeck-relay", "-p", "cipdeck-tests", "--bin", "cipdeck"]))
+    })?;
     report.step("tests: integration, other implementations, browser journeys", || journeys(&tools))?;
     if long {
         report.say("--long: there are no long tests (fuzzing, soak, scale) yet");
