@@ -18,10 +18,10 @@ pub use self::{
     dialog::Dialog,
     field::{FieldRow, describes},
     hex_view::HexView,
-    number_field::NumberField,
+    number_field::{NumberField, NumberFieldProps},
     select_field::SelectField,
     state::{Shape, StateMark},
     switch::Switch,
     text_field::TextField,
-    window_table::{WindowTable, window},
+    window_table::{WindowTable, WindowTableProps, window},
 };
