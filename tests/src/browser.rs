@@ -9,7 +9,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use thirtyfour::common::capabilities::firefox::LoggingPrefsLogLevel;
 use thirtyfour::prelude::*;
-use thirtyfour::{ChromeCapabilities, Key};
+use thirtyfour::{ChromeCapabilities, Key, TypingData};
 use tokio::sync::{Semaphore, SemaphorePermit};
 
 use crate::process::Process;
@@ -52,6 +52,7 @@ impl Journey {
             journey: self.name,
             who,
             folder: self.folder.clone(),
+            server: self.server.clone(),
             driver: Some(driver),
             shots: 0,
             clicks: 0,
@@ -68,6 +69,7 @@ pub struct Browser {
     journey: &'static str,
     who: &'static str,
     folder: PathBuf,
+    server: String,
     driver: Option<WebDriver>,
     shots: usize,
     /// How often the user has clicked.
@@ -109,7 +111,8 @@ impl Browser {
         self.until(&format!("the field `{name}`"), PATIENCE, async |driver| {
             let element = shown(driver, xpath).await?;
             element.send_keys(Key::Control + "a").await.ok()?;
-            element.send_keys(text).await.ok()
+            let replacement = if text.is_empty() { Key::Delete.into() } else { TypingData::from(text) };
+            element.send_keys(replacement).await.ok()
         })
         .await;
     }
@@ -127,9 +130,9 @@ impl Browser {
         self.until(what, limit, async |driver| shown(driver, xpath).await?.text().await.ok()).await
     }
 
-    /// Whether the control with this name can be used.
-    pub async fn can_click(&self, name: &str) -> bool {
-        let element = shown(self.driver(), &control(name)).await;
+    /// Whether the part that is marked for tests with `data-test` can be used.
+    pub async fn can_use(&self, mark: &str) -> bool {
+        let element = shown(self.driver(), &part(mark)).await;
         let Some(element) = element else { return false };
         element.is_enabled().await.unwrap_or(false)
     }
@@ -145,10 +148,16 @@ impl Browser {
         result.unwrap_or_else(|error| panic!("{script}: {error}")).json().clone()
     }
 
-    /// What an asynchronous script passes to its callback, its last argument.
-    pub async fn script_async(&self, script: &str) -> Value {
-        let result = self.driver().execute_async(script, Vec::new()).await;
-        result.unwrap_or_else(|error| panic!("{script}: {error}")).json().clone()
+    /// A command of Chromium's own protocol.
+    pub async fn chromium(&self, command: &str, parameters: Value) -> Value {
+        let session = self.driver().session_id();
+        let url = format!("{}/session/{session}/goog/cdp/execute", self.server);
+        let body = serde_json::json!({ "cmd": command, "params": parameters }).to_string();
+        let request = reqwest::Client::new().post(url).header("content-type", "application/json").body(body);
+        let response = request.send().await.expect("chromedriver answers");
+        let text = response.text().await.expect("a body");
+        let mut answer: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        answer["value"].take()
     }
 
     /// Asks again and again until `probe` gives a value; keeps a screenshot and fails when `limit` has passed.
@@ -213,11 +222,11 @@ impl Drop for Browser {
     }
 }
 
-/// XPath of a control by its name: its text, or its label for those who listen.
+/// XPath of a control by its name: its text or a part of it, or its label for those who listen.
 pub fn control(name: &str) -> String {
     format!(
         "//*[self::button or self::a or self::summary or @role='button' or @role='tab' or @role='switch']\
-         [normalize-space(.)='{name}' or @aria-label='{name}']"
+         [normalize-space(.)='{name}' or @aria-label='{name}' or .//*[normalize-space(.)='{name}']]"
     )
 }
 
@@ -269,7 +278,7 @@ const ARGUMENTS: [&str; 11] = [
     "--disable-component-update",
     "--disable-sync",
     "--hide-scrollbars",
-    "--window-size=1440,900",
+    "--window-size=1440,1043",
 ];
 
 /// From `ChromeDriver was started successfully on port 39731.`

@@ -1,0 +1,8 @@
+//! Journeys through the page in headless Chromium against the real relay, with a screenshot of every stage. One
+//! binary, because each would link the whole relay again.
+
+mod cyclic;
+mod editor;
+mod first_start;
+mod monitor;
+mod write;
