@@ -1,6 +1,5 @@
 //! `TargetCfg.Path`: `"<port>,<node or slot>"` once or twice. 2080-RM001D p. 182.
 
-use alloc::borrow::ToOwned;
 use alloc::string::String;
 use core::fmt;
 use core::str::FromStr;
@@ -150,7 +149,8 @@ fn endpoint(address: &str) -> Option<Endpoint> {
     let host = if host.bytes().all(|b| b.is_ascii_digit() || b == b'.') {
         Host::Ip(host.parse::<core::net::Ipv4Addr>().ok()?.octets())
     } else {
-        Host::Name(host_name(host)?.to_owned())
+        // One target however it is spelled: it gets one message at a time.
+        Host::Name(host_name(host)?.to_ascii_lowercase())
     };
     Some(Endpoint { host, port })
 }
@@ -189,6 +189,11 @@ mod tests {
         let path: TargetPath = " 4 , drive-3.line.local:44820 ".parse().unwrap();
         let Target::Network(endpoint) = path.target else { panic!("a network target") };
         assert_eq!((endpoint.host, endpoint.port), (Host::Name("drive-3.line.local".into()), 44820));
+    }
+
+    #[test]
+    fn a_name_is_the_same_target_however_it_is_spelled() {
+        assert_eq!("4,PLC-3.Line".parse::<TargetPath>(), "4,plc-3.line".parse());
     }
 
     #[test]
