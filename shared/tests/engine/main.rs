@@ -5,6 +5,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod any;
+mod moments;
 mod owner;
 mod promises;
 mod rarely;

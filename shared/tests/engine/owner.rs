@@ -17,6 +17,12 @@ pub(crate) struct Owner {
     pub(crate) engine: Engine,
     pub(crate) now: Instant,
     pub(crate) allowed: bool,
+    /// Whether `Wants` is answered at once.
+    pub(crate) answers: bool,
+    /// Whether bytes are written at once.
+    pub(crate) writes: bool,
+    /// Of the next configuration that is put.
+    pub(crate) revision: u64,
     pub(crate) open: Vec<(LinkId, Target)>,
     pub(crate) dropped: Vec<LinkId>,
     pub(crate) written: Vec<(LinkId, Vec<u8>)>,
@@ -33,6 +39,9 @@ impl Owner {
             engine: Engine::new(),
             now: Instant(0),
             allowed: true,
+            answers: true,
+            writes: true,
+            revision: 1,
             open: Vec::new(),
             dropped: Vec::new(),
             written: Vec::new(),
@@ -55,7 +64,7 @@ impl Owner {
         let mut config = MsgCipGeneric::product_name(path);
         change(&mut config);
         let (plan, findings) = MessagePlan::parse(&config);
-        self.engine.put(block, 1, plan.ok_or(findings), self.now);
+        self.engine.put(block, self.revision, plan.ok_or(findings), self.now);
         self.pump();
     }
 
@@ -67,16 +76,13 @@ impl Owner {
                     self.open.retain(|(open, _)| *open != link);
                     self.dropped.push(link);
                 }
-                Event::Transmit { link } => {
-                    let mut bytes = Vec::new();
-                    while self.engine.poll_transmit(link, &mut bytes, self.now) {}
-                    if !bytes.is_empty() {
-                        self.written.push((link, bytes));
-                    }
-                }
+                Event::Transmit { link } if self.writes => self.take(link),
+                Event::Transmit { .. } => {}
                 Event::Wants(wants) => {
                     self.wants.push(wants);
-                    self.engine.permit(&wants, self.allowed, self.now);
+                    if self.answers {
+                        self.engine.permit(&wants, self.allowed, self.now);
+                    }
                 }
                 Event::Changed { block, view } => {
                     self.bits.entry(block).or_default().extend(view.edges.iter().map(|edge| edge.1.0));
@@ -87,6 +93,25 @@ impl Owner {
                 }
             }
         }
+    }
+
+    fn take(&mut self, link: LinkId) {
+        let mut bytes = Vec::new();
+        while self.engine.poll_transmit(link, &mut bytes, self.now) {}
+        if !bytes.is_empty() {
+            self.written.push((link, bytes));
+        }
+    }
+
+    /// Writes now what was held back.
+    pub(crate) fn write(&mut self, link: LinkId) {
+        self.take(link);
+        self.pump();
+    }
+
+    pub(crate) fn permit(&mut self, wants: &Wants) {
+        self.engine.permit(wants, true, self.now);
+        self.pump();
     }
 
     pub(crate) fn run(&mut self, block: BlockId) -> Result<u64, CommandError> {
