@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
-use cipdeck_shared::config::{Block, BlockId, write_hex};
+use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
 
 use crate::wall_clock;
@@ -41,6 +41,10 @@ impl Row {
     }
 
     pub(super) fn replace(&mut self, block: Block, version: u64) {
+        if asks(&self.block.config) != asks(&block.config) {
+            // An answer to another question would be taken for an answer to this one.
+            self.status.last = None;
+        }
         self.block = block;
         (self.version, self.block_version) = (version, version);
     }
@@ -108,4 +112,9 @@ impl Row {
         let begin = self.edges.iter().rposition(|edge| *edge == (0, StatusBits(StatusBits::EN)));
         (self.edges.len() - begin.unwrap_or(0)) as u64
     }
+}
+
+/// What a block asks, and whom.
+fn asks(config: &MsgCipGeneric) -> impl PartialEq + '_ {
+    (&config.target_cfg.path, &config.app_cfg, &config.req_data, config.req_length)
 }

@@ -120,3 +120,19 @@ async fn the_last_good_value_stays_while_a_later_run_fails() {
     assert_eq!(failed["last"]["ResData"], "2a", "{failed}");
     assert_eq!(failed["last"]["at"], good["last"]["at"], "{failed}");
 }
+
+#[tokio::test]
+async fn the_last_good_value_goes_when_the_block_asks_something_else() {
+    let relay = Relay::start().await;
+    let id = relay.rest.create(&block::product_name("0,0")).await;
+    let good = relay.rest.run(&id).await;
+    let path = format!("blocks/{id}");
+    let stored = relay.rest.get(&path).await.body;
+    let renamed = relay.rest.put(&path, &with(stored, "/name", "other")).await;
+    let status = relay.rest.get(&format!("{path}/status")).await.body;
+    assert_eq!(status["last"], good["last"], "the same question: {status}");
+
+    let mut viewer = relay.viewer().await;
+    relay.rest.put(&path, &with(renamed.body, "/AppCfg/Attribute", 1)).await;
+    viewer.status_where("no value", PATIENCE, &id, |status| status["last"].is_null()).await;
+}
