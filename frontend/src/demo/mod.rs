@@ -104,14 +104,13 @@ impl Demo {
 
     fn changed(&self, block: BlockId, view: &BlockView) {
         let at = browser::wall_clock();
-        if view.q {
-            let res_length = u16::try_from(view.res_data.len()).unwrap_or(u16::MAX);
-            let last = LastSuccess { res_data: write_hex(&view.res_data), res_length, at: at.clone() };
-            self.0.last.borrow_mut().insert(block, last);
+        let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
+        if status.q {
+            self.0.last.borrow_mut().insert(block, LastSuccess::of(&status, at));
         }
-        let last = self.0.last.borrow().get(&block).cloned();
+        status.last = self.0.last.borrow().get(&block).cloned();
         if let Some(id) = self.id(block) {
-            self.0.rows.put_status(id, BlockStatus::new(block, view, Some(at), last));
+            self.0.rows.put_status(id, status);
         }
     }
 

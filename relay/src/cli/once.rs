@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cipdeck_shared::api::{BlockStatus, LastSuccess};
-use cipdeck_shared::config::{BlockId, MsgCipGeneric, write_hex};
+use cipdeck_shared::config::{BlockId, MsgCipGeneric};
 use cipdeck_shared::engine::{BlockView, Exchange};
 use cipdeck_shared::plan::MessagePlan;
 use clap::Args;
@@ -91,9 +91,8 @@ impl Observer for Nobody {
 
     fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange) -> BlockStatus {
         let at = wall_clock::now();
-        let res_data = write_hex(&view.res_data);
-        let res_length = u16::try_from(view.res_data.len()).unwrap_or(u16::MAX);
-        let last = view.q.then(|| LastSuccess { res_data, res_length, at: at.clone() });
-        BlockStatus::new(block, view, Some(at), last)
+        let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
+        status.last = status.q.then(|| LastSuccess::of(&status, at));
+        status
     }
 }

@@ -34,8 +34,6 @@ pub(super) fn checked(plan: Option<&MessagePlan>, findings: &[Finding]) -> Strin
 pub(super) struct Report<'a> {
     #[serde(flatten)]
     status: &'a BlockStatus,
-    /// Message router bytes.
-    request: String,
     /// Message router bytes, if an answer came.
     response: Option<String>,
     /// What the reply's data means.
@@ -47,7 +45,6 @@ impl<'a> Report<'a> {
         let (request, response) = (&ended.exchange.request, ended.exchange.response.as_deref());
         Self {
             status: &ended.status,
-            request: write_hex(request),
             response: response.map(write_hex),
             decoded: response.map(|response| dissect::decode(request, response)).unwrap_or_default(),
         }
@@ -83,7 +80,7 @@ impl<'a> Report<'a> {
                 lines.push("  the reply has no data".to_owned());
             }
         }
-        lines.push(format!("  request  {}", spaced(&self.request)));
+        lines.push(format!("  request  {}", spaced(&self.status.request)));
         if let Some(response) = &self.response {
             lines.push(format!("  reply    {}", spaced(response)));
         }

@@ -67,8 +67,7 @@ impl Row {
     pub(super) fn finished(&mut self, view: &BlockView, exchange: Exchange, version: u64) {
         let at = self.status.at.clone().unwrap_or_else(wall_clock::now);
         if view.q {
-            let (res_data, res_length) = (self.status.res_data.clone(), self.status.res_length);
-            self.status.last = Some(LastSuccess { res_data, res_length, at: at.clone() });
+            self.status.last = Some(LastSuccess::of(&self.status, at.clone()));
         }
         if self.exchanges.len() == MAX_EXCHANGES {
             self.exchanges.pop_front();

@@ -25,6 +25,10 @@ pub struct BlockStatus {
     /// The manual's status.
     #[serde(rename = "Status")]
     pub status: CipStatus,
+    /// Message router bytes, as hexadecimal text, of the message that this status is about. The block may have been
+    /// changed since: what `ResData` means follows from this request alone.
+    #[serde(default)]
+    pub request: String,
     /// Bytes in `ResData`.
     #[serde(rename = "ResLength")]
     pub res_length: u16,
@@ -56,6 +60,9 @@ pub struct BlockStatus {
 /// The last success of a block, kept while a new run clears `ResData`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LastSuccess {
+    /// Message router bytes of the request that it answers, as hexadecimal text.
+    #[serde(default)]
+    pub request: String,
     /// Reply data as hexadecimal text.
     #[serde(rename = "ResData")]
     pub res_data: String,
@@ -66,6 +73,14 @@ pub struct LastSuccess {
     pub at: String,
 }
 
+impl LastSuccess {
+    /// What a status with Q TRUE leaves behind.
+    pub fn of(status: &BlockStatus, at: String) -> Self {
+        let (request, res_data) = (status.request.clone(), status.res_data.clone());
+        Self { request, res_data, res_length: status.res_length, at }
+    }
+}
+
 impl BlockStatus {
     /// From the engine's view. `at` and `last` belong to the caller, who has a wall clock.
     pub fn new(block: BlockId, view: &BlockView, at: Option<String>, last: Option<LastSuccess>) -> Self {
@@ -74,6 +89,7 @@ impl BlockStatus {
             input: view.input,
             q: view.q,
             status: view.status,
+            request: write_hex(&view.request),
             // ResData is at most 490 bytes.
             res_length: u16::try_from(view.res_data.len()).unwrap_or(u16::MAX),
             res_data: write_hex(&view.res_data),

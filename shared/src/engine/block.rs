@@ -3,6 +3,7 @@
 //! Source: 2080-RM001D p. 179, 217, 221 and the message timing of FactoryTalk Design Workbench; decisions where
 //! the manual is silent are in docs/ARCHITECTURE.md.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::failure::Failure;
@@ -149,12 +150,13 @@ impl MsgBlock {
         self.triggered_at
     }
 
-    /// Everything that a viewer sees, without edges.
+    /// Everything that the block itself knows: without the request, its place and its edges.
     pub fn view(&self) -> BlockView {
         BlockView {
             input: self.input,
             q: self.q,
             status: self.status,
+            request: Arc::default(),
             res_data: self.res_data.clone(),
             phase: self.phase,
             position: 0,
@@ -233,6 +235,8 @@ pub struct BlockView {
     pub q: bool,
     /// CIPSTATUS.
     pub status: CipStatus,
+    /// Message router bytes of the message that everything here is about; empty before the first trigger.
+    pub request: Arc<[u8]>,
     /// Reply data.
     pub res_data: Vec<u8>,
     /// How far the message is.

@@ -28,6 +28,8 @@ pub(super) struct Entry {
     pub(super) run_once: bool,
     /// When the engine has to look at this block again.
     pub(super) wake: Option<Instant>,
+    /// Message router bytes of the newest message.
+    pub(super) request: Arc<[u8]>,
     edges: Vec<(u64, StatusBits)>,
     edges_dropped: u64,
 }
@@ -73,6 +75,7 @@ impl Entry {
             active: None,
             run_once: false,
             wake: None,
+            request: Arc::default(),
             edges: Vec::new(),
             edges_dropped: 0,
         }
@@ -103,15 +106,19 @@ impl Entry {
         Step { effect, changed: changed.then_some(edges) }
     }
 
+    /// How the block looks now, without edges.
+    pub(super) fn glance(&self) -> BlockView {
+        BlockView { request: Arc::clone(&self.request), ..self.block.view() }
+    }
+
     /// The block with all edges of its last message.
     pub(super) fn view(&self) -> BlockView {
-        BlockView { edges: self.edges.clone(), edges_dropped: self.edges_dropped, ..self.block.view() }
+        BlockView { edges: self.edges.clone(), edges_dropped: self.edges_dropped, ..self.glance() }
     }
 
     /// What an exchange begins with.
     pub(super) fn exchange(&self) -> Exchange {
-        let request = self.active.as_ref().map(|active| active.plan.request().bytes());
-        Exchange { request: request.unwrap_or_default(), ..Exchange::default() }
+        Exchange { request: self.request.to_vec(), ..Exchange::default() }
     }
 
     /// When the engine has to look at this block: its timeout, or its next trigger.

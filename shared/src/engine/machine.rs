@@ -258,6 +258,10 @@ impl Engine {
     fn trigger(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         let timeout = entry.plan.as_ref().map_or(NO_TIME, |plan| Millis::from(plan.ucmm_timeout_ms()));
+        if !entry.block.phase().is_busy() {
+            entry.request =
+                entry.plan.as_ref().map_or_else(|_| Arc::default(), |plan| plan.request().bytes().into());
+        }
         self.step(block, Input::Trigger { deadline: now + timeout }, now);
     }
 
@@ -280,7 +284,7 @@ impl Engine {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         let step = entry.step(input, now);
         if let Some(edges) = step.changed {
-            let view = entry.block.view();
+            let view = entry.glance();
             let position = self.blocks.get(&block).map_or(0, |entry| self.position(block, entry));
             let view = Box::new(BlockView { position, edges, ..view });
             self.events.push_back(Event::Changed { block, view });
@@ -425,7 +429,7 @@ impl Engine {
 
     fn announce_position(&mut self, block: BlockId) {
         if let Some(entry) = self.blocks.get(&block) {
-            let view = Box::new(BlockView { position: self.position(block, entry), ..entry.block.view() });
+            let view = Box::new(BlockView { position: self.position(block, entry), ..entry.glance() });
             self.events.push_back(Event::Changed { block, view });
         }
     }

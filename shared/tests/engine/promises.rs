@@ -448,3 +448,16 @@ fn a_frame_that_nobody_asked_for_changes_nothing() {
     owner.reply(link, &[1]);
     assert!(owner.view(A).q);
 }
+
+#[test]
+fn a_value_names_the_request_that_it_answers_although_the_block_was_changed_meanwhile() {
+    let mut owner = Owner::with_blocks(&[(A, "4,10.0.0.1")]);
+    owner.run(A).unwrap();
+    let link = owner.register();
+    owner.put(A, "4,10.0.0.1", |config| config.app_cfg.attribute = 1);
+    owner.reply(link, b"\x04CHP1");
+    assert_eq!(owner.finished[0].1.request.last(), Some(&7));
+    assert_eq!(owner.view(A).request.last(), Some(&7), "the name, not the vendor id");
+    owner.run(A).unwrap();
+    assert_eq!(owner.view(A).request.last(), Some(&1));
+}

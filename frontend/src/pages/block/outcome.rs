@@ -7,7 +7,6 @@ use cipdeck_shared::{
     config::read_hex,
     dissect::{self, Decoded},
     engine::Phase,
-    plan::MessagePlan,
     wire::{MessageRouterReply, MessageRouterRequest},
 };
 use yew::prelude::*;
@@ -26,9 +25,10 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
     let row = &props.row;
     let status = &row.status;
     use_second(status.last.is_some());
-    let shown = status.last.as_ref().map(|last| last.res_data.clone());
-    let request = request_of(row);
-    let values = use_memo((request, shown), |(request, data)| decode(request.as_deref(), data.as_deref()));
+    let shown = status.last.as_ref().map(|last| (last.request.clone(), last.res_data.clone()));
+    let values = use_memo(shown, |shown| {
+        shown.as_ref().map_or_else(Vec::new, |(request, data)| decode(request, data))
+    });
     html! {
         <div class="outcome">
             <h2>
@@ -59,23 +59,16 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
     }
 }
 
-/// The request that the newest reply answers; without an exchange, the one that is configured.
-fn request_of(row: &Row) -> Option<Vec<u8>> {
-    let sent = row.exchange.as_ref().and_then(|exchange| read_hex(&exchange.request).ok());
-    sent.or_else(|| Some(MessagePlan::parse(&row.config).0?.request().bytes()))
-}
-
-/// `ResData` exists only after a success: the reply around it is known.
-pub(crate) fn decode(request: Option<&[u8]>, data: Option<&str>) -> Vec<Decoded> {
-    let Some((request, data)) = request.zip(data.and_then(|data| read_hex(data).ok())) else {
-        return Vec::new();
-    };
-    let Ok(service) = MessageRouterRequest::decode(request).map(|request| request.service()) else {
+/// What `ResData` means: that follows from the request that it answers. It exists only after a success, so the
+/// reply around it is known.
+pub(crate) fn decode(request: &str, data: &str) -> Vec<Decoded> {
+    let (Ok(request), Ok(data)) = (read_hex(request), read_hex(data)) else { return Vec::new() };
+    let Ok(service) = MessageRouterRequest::decode(&request).map(|request| request.service()) else {
         return Vec::new();
     };
     let mut reply = Vec::new();
     MessageRouterReply::success(service, &data).encode(&mut reply);
-    dissect::decode(request, &reply)
+    dissect::decode(&request, &reply)
 }
 
 fn decoded(values: &[Decoded]) -> Html {
@@ -126,16 +119,13 @@ pub(crate) fn age_words(seconds: f64) -> AttrValue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cipdeck_shared::config::MsgCipGeneric;
 
     #[test]
     fn the_data_of_a_success_is_decoded_by_its_request() {
-        let (plan, _) = MessagePlan::parse(&MsgCipGeneric::product_name("0,0"));
-        let request = plan.unwrap().request().bytes();
-        let values = decode(Some(&request), Some("0443504831"));
+        let values = decode("0e03200124013007", "0443504831");
         assert_eq!((values[0].text.as_str(), values[0].guess), ("CPH1", false));
-        assert!(decode(Some(&request), None).is_empty());
-        assert!(decode(None, Some("00")).is_empty());
+        assert!(decode("0e03200124013007", "").is_empty());
+        assert!(decode("", "00").is_empty());
     }
 
     #[test]

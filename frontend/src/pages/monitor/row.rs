@@ -1,8 +1,5 @@
 //! One block on one line. It knows its id; everything else comes from the store.
 
-use std::rc::Rc;
-
-use cipdeck_shared::{config::MsgCipGeneric, plan::MessagePlan};
 use yew::prelude::*;
 use yew_router::prelude::Link;
 
@@ -27,12 +24,6 @@ pub(super) struct MonitorRowProps {
 pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
     let row = use_row(props.id);
     use_second(row.as_ref().is_some_and(|row| row.status.last.is_some()));
-    let config = row.as_ref().map(|row| row.config.clone());
-    // The request changes with the configuration only; values change all the time.
-    let request = use_memo(ByAddress(config), |config| {
-        let (plan, _) = MessagePlan::parse(config.0.as_deref()?);
-        Some(plan?.request().bytes())
-    });
     let Some(row) = row else { return html! {} };
     let status = &row.status;
     let reply = status.reply_us.map(duration).unwrap_or_default();
@@ -45,7 +36,7 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
                 <Link<Route> to={Route::Block { id: props.id.to_string() }}>{ &row.config.name }</Link<Route>>
             </th>
             <td class="col-target mono">{ &row.config.target_cfg.path }</td>
-            <td class={classes!("col-value", (!status.q).then_some("stale"))}>{ value(&row, request.as_deref()) }</td>
+            <td class={classes!("col-value", (!status.q).then_some("stale"))}>{ value(&row) }</td>
             <td class="col-age">{ age.unwrap_or_default() }</td>
             <td class="col-runs">{ status.runs }</td>
             <td class="col-reply">{ reply }</td>
@@ -55,30 +46,12 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
 }
 
 /// The newest good value on one line.
-fn value(row: &Row, request: Option<&[u8]>) -> String {
-    let status = &row.status;
-    let data = if status.q {
-        Some(status.res_data.as_str())
-    } else {
-        status.last.as_ref().map(|last| last.res_data.as_str())
-    };
-    let values = decode(request, data);
+fn value(row: &Row) -> String {
+    let Some(last) = &row.status.last else { return String::new() };
+    let values = decode(&last.request, &last.res_data);
     // Bytes are a fact; a guess needs more room than a line has.
     if values.iter().any(|value| value.guess) {
-        return data.unwrap_or_default().to_owned();
+        return last.res_data.clone();
     }
     values.iter().map(|value| value.text.as_str()).collect::<Vec<_>>().join(" · ")
-}
-
-/// Equal only if it is the same configuration in memory: cheap to compare in every frame.
-#[derive(Clone)]
-struct ByAddress(Option<Rc<MsgCipGeneric>>);
-
-impl PartialEq for ByAddress {
-    fn eq(&self, other: &Self) -> bool {
-        match (&self.0, &other.0) {
-            (Some(one), Some(other)) => Rc::ptr_eq(one, other),
-            (one, other) => one.is_none() && other.is_none(),
-        }
-    }
 }
