@@ -2,7 +2,7 @@
 
 use js_sys::Date;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
-use web_sys::{Element, Storage};
+use web_sys::{Document, Element, Storage};
 use yew::platform::spawn_local;
 
 /// Milliseconds since the page was opened. Never goes back.
@@ -49,9 +49,31 @@ pub fn keep(name: &str, text: &str) {
     }
 }
 
+/// Names the page in the browser's tab.
+pub fn set_title(title: &str) {
+    if let Some(document) = document() {
+        document.set_title(title);
+    }
+}
+
+/// Says on the page that it has stopped working: after a panic nothing answers any more.
+pub fn show_crash(what: &str) {
+    let note = document().and_then(|document| {
+        let note = document.create_element("p").ok()?;
+        document.body()?.prepend_with_node_1(&note).ok()?;
+        Some(note)
+    });
+    if let Some(note) = note {
+        note.set_class_name("crash");
+        // The name is a valid attribute name.
+        let _ = note.set_attribute("role", "alert");
+        note.set_text_content(Some(what));
+    }
+}
+
 /// The `html` element.
 pub fn root() -> Option<Element> {
-    web_sys::window()?.document()?.document_element()
+    document()?.document_element()
 }
 
 /// Whether the system asks for dark colours.
@@ -86,6 +108,10 @@ pub fn offer(name: &str, function: impl Fn() -> JsValue + 'static) {
     }
     // Lives as long as the page.
     closure.forget();
+}
+
+fn document() -> Option<Document> {
+    web_sys::window()?.document()
 }
 
 fn storage() -> Option<Storage> {

@@ -6,6 +6,7 @@ use gloo_timers::callback::Interval;
 use yew::prelude::*;
 
 use crate::{
+    browser,
     editor::Draft,
     net::Link,
     notice::Notice,
@@ -77,6 +78,18 @@ pub fn use_notice(id: DeckId) -> Option<Notice> {
         move || drop(watch)
     });
     bench.notices().notice(id)
+}
+
+/// Names the page in the browser's tab: `drive-current · cipdeck`.
+#[hook]
+pub fn use_title(page: &str) {
+    use_effect_with(page.to_owned(), |page| {
+        browser::set_title(&if page.is_empty() {
+            "cipdeck".to_owned()
+        } else {
+            format!("{page} · cipdeck")
+        });
+    });
 }
 
 /// Renders every second while `running`: for ages.

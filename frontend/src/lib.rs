@@ -30,5 +30,9 @@ pub mod workbench;
 
 /// Puts the page into the document's body.
 pub fn start() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(ToString::to_string).unwrap_or_default();
+        browser::show_crash(&rust_i18n::t!("crash", place = place));
+    }));
     yew::Renderer::<app::App>::new().render();
 }

@@ -1,6 +1,11 @@
 //! Everything the page can do with blocks: where a block runs, what is stored, what a person is asked.
 
-use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    rc::Rc,
+};
 
 use cipdeck_shared::{
     api::{Problem, ProblemCode},
@@ -28,7 +33,17 @@ struct Parts {
     relay: Relay,
     demo: Demo,
     notices: NoticeStore,
-    moved: RefCell<BTreeMap<DeckId, DeckId>>,
+    gone: RefCell<BTreeMap<DeckId, Gone>>,
+    storing: RefCell<BTreeSet<DeckId>>,
+}
+
+/// What this page did to an entry that is not there any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gone {
+    /// It has been stored, and is there under the relay's id.
+    Stored(DeckId),
+    /// It has been deleted.
+    Deleted,
 }
 
 /// Where a block would run now.
@@ -51,7 +66,15 @@ impl Workbench {
             }
         }
         let demo = Demo::new(rows.clone());
-        Self(Rc::new(Parts { rows, drafts, relay, demo, notices, moved: RefCell::default() }))
+        Self(Rc::new(Parts {
+            rows,
+            drafts,
+            relay,
+            demo,
+            notices,
+            gone: RefCell::default(),
+            storing: RefCell::default(),
+        }))
     }
 
     /// The rows.
@@ -74,9 +97,9 @@ impl Workbench {
         &self.0.notices
     }
 
-    /// Where an entry is now that has been stored under another id.
-    pub fn moved(&self, id: DeckId) -> Option<DeckId> {
-        self.0.moved.borrow().get(&id).copied()
+    /// What this page did to an entry that is not there any more.
+    pub fn gone(&self, id: DeckId) -> Option<Gone> {
+        self.0.gone.borrow().get(&id).copied()
     }
 
     /// Where a message would be sent from now.
@@ -102,6 +125,13 @@ impl Workbench {
         self.0.rows.put_new(id, Rc::new(config.clone()));
         self.0.drafts.put(id, Draft::new(config, None));
         id
+    }
+
+    /// Makes a new block of the draft of one that somebody else has deleted.
+    pub fn rescue(&self, id: DeckId) -> Option<DeckId> {
+        let draft = self.0.drafts.draft(id)?;
+        self.0.drafts.discard(id);
+        Some(self.add(draft.config.clone()))
     }
 
     /// Changes a draft.
@@ -226,7 +256,17 @@ impl Workbench {
     }
 
     /// Stores an entry if there is something to store: its id and revision in the relay, or `None` and a notice.
+    /// While it is being stored a second wish is ignored: two clicks must not make two blocks.
     async fn store(&self, id: DeckId) -> Option<(BlockId, u64)> {
+        if !self.0.storing.borrow_mut().insert(id) {
+            return None;
+        }
+        let stored = self.store_once(id).await;
+        self.0.storing.borrow_mut().remove(&id);
+        stored
+    }
+
+    async fn store_once(&self, id: DeckId) -> Option<(BlockId, u64)> {
         self.0.notices.clear(id);
         let draft = self.draft(id)?;
         let stored = match id {
@@ -266,7 +306,7 @@ impl Workbench {
             self.0.drafts.put(to, newer);
         }
         if id != to {
-            self.0.moved.borrow_mut().insert(id, to);
+            self.0.gone.borrow_mut().insert(id, Gone::Stored(to));
             self.0.demo.remove(id);
             self.0.rows.remove(id);
         }
@@ -295,6 +335,7 @@ impl Workbench {
         self.0.notices.clear(id);
         self.0.demo.remove(id);
         self.0.drafts.discard(id);
+        self.0.gone.borrow_mut().insert(id, Gone::Deleted);
         self.0.rows.remove(id);
     }
 

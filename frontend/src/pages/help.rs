@@ -2,11 +2,12 @@
 
 use yew::prelude::*;
 
-use crate::i18n::tr;
+use crate::{hooks::use_title, i18n::tr};
 
 /// Short: what the words mean, which keys there are, where the manuals are.
 #[component]
 pub fn HelpPage() -> Html {
+    use_title(&tr!("help.title"));
     let word = |word: &'static str, meaning: AttrValue| {
         html! { <><dt>{ word }</dt><dd>{ meaning }</dd></> }
     };

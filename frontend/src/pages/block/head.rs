@@ -44,9 +44,11 @@ pub(super) fn Head(props: &HeadProps) -> Html {
                     id="field-name" name="name" class="input name" value={subject.draft.config.name.clone()} {oninput}
                     aria-describedby={describes("field-name", &remarks, None)} autocomplete="off" spellcheck="false"
                 />
-                { for remarks.iter().map(|remark| html! {
-                    <p class="finding error" id="field-name-finding" role="alert">{ &remark.text }</p>
-                }) }
+                if !remarks.is_empty() {
+                    <div id="field-name-finding">
+                        { for remarks.iter().map(|remark| html! { <p class="finding error" role="alert">{ &remark.text }</p> }) }
+                    </div>
+                }
                 <span class="saved" data-test="saved" data-unsaved={subject.unsaved.to_string()}>
                     { if subject.unsaved { tr!("save.unsaved") } else { tr!("save.saved", revision = subject.revision) } }
                 </span>

@@ -91,8 +91,10 @@ fn Conflict(props: &ConflictProps) -> Html {
                     <tr><th scope="row">{ member }</th><td>{ mine }</td><td>{ theirs }</td></tr>
                 }) }</tbody>
             </table>
-            <button type="button" class="button" onclick={on_mine} data-test="keep-mine">{ tr!("conflict.keep_mine") }</button>
-            <button type="button" class="button" onclick={on_theirs} data-test="take-theirs">{ tr!("conflict.take_theirs") }</button>
+            <div class="choices">
+                <button type="button" class="button" onclick={on_mine} data-test="keep-mine">{ tr!("conflict.keep_mine") }</button>
+                <button type="button" class="button" onclick={on_theirs} data-test="take-theirs">{ tr!("conflict.take_theirs") }</button>
+            </div>
         </div>
     }
 }

@@ -80,7 +80,7 @@ fn decoded(values: &[Decoded]) -> Html {
         if guessed {
             <p class="guess-note">{ tr!("outcome.guess") }</p>
         }
-        <ul class={classes!("values", (values.len() == 1).then_some("single"))} data-test="decoded">
+        <ul class={classes!("values", (values.len() == 1 && !guessed).then_some("single"))} data-test="decoded">
             { for values.iter().map(value) }
         </ul>
     </> }

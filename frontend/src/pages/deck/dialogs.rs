@@ -56,9 +56,11 @@ fn buttons(
     test: &'static str,
     on_answered: &Callback<Option<DeckId>>,
 ) -> Html {
+    // After a copy there is nothing to cancel.
+    let leave = if test == "confirm-copy" { tr!("dialog.close") } else { tr!("dialog.cancel") };
     html! {
         <div class="dialog-buttons">
-            <button type="button" class="button" onclick={on_answered.reform(|_: MouseEvent| None)}>{ tr!("dialog.cancel") }</button>
+            <button type="button" class="button" onclick={on_answered.reform(|_: MouseEvent| None)}>{ leave }</button>
             <button type="submit" class={classes!("button", kind)} data-test={test}>{ words }</button>
         </div>
     }

@@ -9,11 +9,12 @@ use yew_router::prelude::*;
 
 use self::{first_start::FirstStart, list::BlockList};
 use crate::{
-    hooks::{use_ids, use_link, use_row, use_workbench},
+    hooks::{use_ids, use_link, use_row, use_title, use_workbench},
     i18n::tr,
     pages::block::BlockPane,
     route::Route,
     store::DeckId,
+    workbench::Gone,
 };
 
 /// What is chosen.
@@ -29,6 +30,8 @@ pub struct DeckPageProps {
 pub fn DeckPage(props: &DeckPageProps) -> Html {
     let bench = use_workbench();
     let ids = use_ids();
+    let name = props.id.and_then(|id| bench.draft(id)).map(|draft| draft.config.name);
+    use_title(&name.unwrap_or_default());
     // Renders again when it is known whether there is a relay.
     use_link();
     if ids.is_empty() && bench.relay().is_undecided() {
@@ -39,7 +42,7 @@ pub fn DeckPage(props: &DeckPageProps) -> Html {
         None => html! {
             <div class="deck">
                 <BlockList {ids} />
-                <p class="empty">{ tr!("deck.choose") }</p>
+                <div class="empty"><h1 class="unseen">{ tr!("nav.deck") }</h1><p>{ tr!("deck.choose") }</p></div>
             </div>
         },
         Some(id) => html! {
@@ -61,15 +64,37 @@ struct ChosenProps {
 fn Chosen(props: &ChosenProps) -> Html {
     let bench = use_workbench();
     let id = props.id;
-    let there = use_row(id).is_some();
-    if there {
+    if use_row(id).is_some() {
         return html! { <BlockPane key={id.to_string()} {id} /> };
     }
-    if let Some(to) = bench.moved(id) {
-        return html! { <Redirect<Route> to={Route::Block { id: to.to_string() }} /> };
+    match bench.gone(id) {
+        Some(Gone::Stored(to)) => html! { <Redirect<Route> to={Route::Block { id: to.to_string() }} /> },
+        Some(Gone::Deleted) => html! { <Redirect<Route> to={Route::Deck} /> },
+        None if bench.relay().is_undecided() => {
+            html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> }
+        }
+        None => html! { <Missing {id} /> },
     }
-    if bench.relay().is_undecided() {
-        return html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> };
+}
+
+/// An entry that is not there; what was changed in it can be kept.
+#[component]
+fn Missing(props: &ChosenProps) -> Html {
+    let bench = use_workbench();
+    let navigator = use_navigator();
+    let has_draft = bench.drafts().draft(props.id).is_some();
+    let on_rescue = use_callback((bench, navigator, props.id), |_: MouseEvent, (bench, navigator, id)| {
+        if let (Some(id), Some(navigator)) = (bench.rescue(*id), navigator) {
+            navigator.push(&Route::Block { id: id.to_string() });
+        }
+    });
+    html! {
+        <div class="empty">
+            <h1>{ tr!("deck.gone_title") }</h1>
+            <p>{ tr!("deck.gone") }</p>
+            if has_draft {
+                <button type="button" class="button" onclick={on_rescue}>{ tr!("deck.rescue") }</button>
+            }
+        </div>
     }
-    html! { <div class="empty"><h1>{ tr!("deck.gone_title") }</h1><p>{ tr!("deck.gone") }</p></div> }
 }

@@ -10,7 +10,7 @@ use yew::prelude::*;
 
 use self::{row::MonitorRow, summary::Summary};
 use crate::{
-    hooks::{use_ids, use_workbench},
+    hooks::{use_ids, use_title, use_workbench},
     i18n::tr,
     kit::WindowTable,
     pages::connection::StaleNote,
@@ -25,6 +25,7 @@ const ROW_HEIGHT: u32 = 32;
 pub fn MonitorPage() -> Html {
     let bench = use_workbench();
     let ids = use_ids();
+    use_title(&tr!("monitor.title"));
     let filter = use_state(String::new);
     let oninput = use_callback(filter.clone(), |event: InputEvent, filter| {
         filter.set(event.target_unchecked_into::<HtmlInputElement>().value());
