@@ -117,6 +117,31 @@ impl Browser {
         .await;
     }
 
+    /// Moves the pointer over what an XPath finds.
+    pub async fn point_at(&self, xpath: &str) {
+        self.until(&format!("{xpath} can be pointed at"), PATIENCE, async |driver| {
+            let element = shown(driver, xpath).await?;
+            driver.action_chain().move_to_element_center(&element).perform().await.ok()
+        })
+        .await;
+    }
+
+    /// Presses a key while what an XPath finds has the focus.
+    pub async fn press(&self, xpath: &str, key: Key) {
+        self.until(&format!("{xpath} takes a key"), PATIENCE, async |driver| {
+            let element = shown(driver, xpath).await?;
+            element.focus().await.ok()?;
+            element.send_keys(key.clone()).await.ok()
+        })
+        .await;
+    }
+
+    /// Waits until an XPath finds nothing that is displayed.
+    pub async fn gone(&self, what: &str, xpath: &str) {
+        let what = format!("gone: {what}");
+        self.until(&what, PATIENCE, async |driver| shown(driver, xpath).await.is_none().then_some(())).await;
+    }
+
     /// Waits until the page shows this text.
     pub async fn see(&self, text: &str, limit: Duration) {
         self.until(&format!("the page shows `{text}`"), limit, async |driver| {
@@ -186,12 +211,17 @@ impl Browser {
     }
 
     /// Ends the browser; fails when the page has logged an error.
-    pub async fn close(mut self) {
+    pub async fn close(self) {
         let log = self.driver().browser_log().await.unwrap_or_default();
         let errors: Vec<_> = log.iter().filter(|entry| entry.level == "SEVERE").collect();
+        assert!(errors.is_empty(), "the page has logged errors: {errors:#?}");
+        self.close_with_expected_errors().await;
+    }
+
+    /// Ends the browser after a journey in which requests fail: the browser itself logs those.
+    pub async fn close_with_expected_errors(mut self) {
         let driver = self.driver.take().expect("open until here");
         driver.quit().await.expect("Chromium ends");
-        assert!(errors.is_empty(), "the page has logged errors: {errors:#?}");
     }
 
     /// The WebDriver session.

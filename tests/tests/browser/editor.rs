@@ -6,6 +6,7 @@ use cipdeck_tests::browser::{Browser, Journey, part};
 use cipdeck_tests::fake_plc::{self, FakePlc};
 use cipdeck_tests::peers::CiplinkAdapter;
 use cipdeck_tests::relay::Relay;
+use thirtyfour::Key;
 
 #[tokio::test]
 async fn a_block_made_in_the_editor_reads_a_device_and_explains_its_refusal() {
@@ -26,11 +27,7 @@ async fn a_block_made_in_the_editor_reads_a_device_and_explains_its_refusal() {
     user.shot("vendor-id").await;
 
     user.fill("Class", "238").await;
-    user.click_part("run").await; // what a class of a vendor does, nobody knows: it may be a write
-    if user.can_use("write-confirm").await {
-        user.shot("may-be-a-write").await;
-        user.click_part("write-confirm").await;
-    }
+    user.click("Run").await;
     user.find("ER", &lit("ER"), PATIENCE).await;
     let codes = user.find("the numbers", &part("error-codes"), PATIENCE).await;
     assert!(codes.contains("224") && codes.contains("5 (0x05)"), "{codes}");
@@ -79,6 +76,37 @@ async fn bad_input_is_a_finding_at_its_field_and_nothing_is_sent() {
     assert_eq!(relay.rest.get(&format!("blocks/{id}")).await.body["revision"], 1, "nothing is stored");
     assert_eq!(plc.requests().len(), 0, "nothing is sent");
     user.close().await;
+}
+
+#[tokio::test]
+async fn every_byte_says_what_it_is() {
+    let relay = Relay::start().await;
+    let id = relay.rest.create(&block::product_name("0,0")).await;
+    relay.rest.run(&id).await;
+    let journey = Journey::start("bytes").await;
+    let mut user = journey.open("user", &relay.page()).await;
+    user.click("get-1-1-7").await;
+    user.point_at(&byte("request-bytes", "0E")).await;
+    let pointed =
+        user.find("what 0E is", &explanation("request-bytes", "Get_Attribute_Single"), PATIENCE).await;
+    assert!(pointed.to_lowercase().contains("service"), "{pointed}");
+    user.shot("pointed-at").await;
+    user.press(&byte("request-bytes", "0E"), Key::Right).await;
+    user.find("the next byte", &explanation("request-bytes", "3 words"), PATIENCE).await;
+    user.press(&byte("reply-bytes", "8E"), Key::End).await;
+    user.find("the product name", &explanation("reply-bytes", "cipdeck demo drive"), PATIENCE).await;
+    user.shot("walked-to").await;
+    user.close().await;
+}
+
+/// XPath of the button of the part that begins with a byte.
+fn byte(view: &str, byte: &str) -> String {
+    format!("({}//button[starts-with(@aria-label, '{byte}')])[1]", part(view))
+}
+
+/// XPath of an explanation that contains a text.
+fn explanation(view: &str, text: &str) -> String {
+    format!("{}//*[@class='explanation'][contains(., '{text}')]", part(view))
 }
 
 async fn finding_at(user: &Browser, field: &str) -> String {

@@ -50,4 +50,5 @@ async fn the_demo_device_works_without_a_relay() {
     user.click_part("first-demo").await;
     user.see("cipdeck demo drive", PATIENCE).await;
     user.shot("product-name").await;
+    user.close_with_expected_errors().await;
 }

@@ -2,7 +2,9 @@
 //! binary, because each would link the whole relay again.
 
 mod cyclic;
+mod deck;
 mod editor;
 mod first_start;
 mod monitor;
+mod reconnect;
 mod write;

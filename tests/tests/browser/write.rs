@@ -21,10 +21,7 @@ async fn a_write_shows_its_bytes_and_is_sent_after_the_answer_only() {
     assert_eq!(bytes, "10 03 20 04 24 96 30 03 01 02 03 04");
     user.shot("asked").await;
     user.click_part("write-cancel").await;
-    user.until("the question is gone", PATIENCE, async |_| {
-        (!user.can_use("write-cancel").await).then_some(())
-    })
-    .await;
+    user.gone("the question", &part("write-dialog")).await;
     user.shot("declined").await;
     assert_eq!(plc.messages().len(), 0, "nothing is sent before the answer, nor after a no");
 
