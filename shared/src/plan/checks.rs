@@ -10,11 +10,12 @@ use crate::config::{
 use crate::table::Access;
 use crate::wire::{Epath, MessageRouterRequest, ServiceCode};
 
-use super::finding::{Feature, Field, Finding, Rule, Severity};
+use super::finding::{Field, Finding, Severity};
 use super::limits::{
     CONN_MSG_TIMEOUT, MAX_NAME, MAX_REQUEST_DATA, MAX_RESPONSE_DATA, TimeoutRange, UCMM_TIMEOUT,
     USUAL_MESSAGE,
 };
+use super::rule::{Feature, Rule};
 use super::{App, TriggerType};
 
 #[derive(Default)]

@@ -3,6 +3,7 @@
 mod checks;
 mod finding;
 pub mod limits;
+mod rule;
 
 use alloc::vec::Vec;
 
@@ -11,7 +12,8 @@ use crate::table::{self, Access};
 use crate::wire::{Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
 use self::checks::Checks;
-pub use self::finding::{Feature, Field, Finding, Rule, Severity};
+pub use self::finding::{Field, Finding, Severity};
+pub use self::rule::{Feature, Rule};
 
 /// A message that can be sent. Exists only for a configuration without errors.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,5 +1,7 @@
 //! One endpoint: its TCP connection, its session, and one request outstanding at a time.
 
+mod replies;
+
 use alloc::collections::VecDeque;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -7,16 +9,13 @@ use alloc::vec::Vec;
 
 use crate::config::BlockId;
 use crate::plan::MessagePlan;
-use crate::wire::{
-    DecodeError, DecodeErrorKind, EncapsulationStatus, GeneralStatus, MessageRouterReply, SenderContext,
-    UnconnectedMessage,
-};
+use crate::wire::{SenderContext, UnconnectedMessage};
 
-use super::block::Input;
-use super::event::{LinkId, Wants};
-use super::failure::{ConnectError, Failure};
-use super::session::{Received, Session};
-use super::time::{Instant, Millis};
+use crate::engine::block::Input;
+use crate::engine::event::{LinkId, Wants};
+use crate::engine::failure::{ConnectError, Failure};
+use crate::engine::session::Session;
+use crate::engine::time::{Instant, Millis};
 
 /// First delay after a failed connect; doubled up to [`MAX_BACK_OFF`].
 const MIN_BACK_OFF: Millis = Millis(250);
@@ -212,76 +211,6 @@ impl Client {
         self.advance(cx);
     }
 
-    fn received(&mut self, received: Received, cx: &mut Context<'_>) {
-        match received {
-            Received::Registered => {
-                if let Link::Registering(id, session) = core::mem::take(&mut self.link) {
-                    self.link = Link::Ready(id, session);
-                }
-                self.failures = 0;
-                self.retry_at = None;
-                for job in &self.queue {
-                    cx.out.push_back(Output::Block(job.block, Input::ConnectEnded));
-                }
-            }
-            Received::Refused(status) => {
-                self.disconnect(cx);
-                self.fail_all(&Failure::SessionRefused(status), cx);
-            }
-            Received::Reply { message, at, frame } => self.replied(message, at, frame, cx),
-            Received::Status { status, frame } => self.status(status, frame, cx),
-            Received::Malformed { error, frame } => {
-                self.disconnect(cx);
-                match self.outstanding.take() {
-                    Some(outstanding) => fail(&outstanding.job, Failure::Malformed(error), frame, None, cx),
-                    None => self.fail_all(&Failure::Malformed(error), cx),
-                }
-            }
-        }
-    }
-
-    fn replied(&mut self, message: Vec<u8>, at: usize, frame: Vec<u8>, cx: &mut Context<'_>) {
-        let Some(Outstanding { job, .. }) = self.outstanding.take() else { return };
-        let asked = job.plan.request().service();
-        let input = match MessageRouterReply::decode(&message) {
-            Ok(reply) if reply.service != asked => {
-                let kind = DecodeErrorKind::Unexpected {
-                    field: "service of the reply",
-                    found: reply.service.0.into(),
-                };
-                Err(DecodeError { at, kind })
-            }
-            Ok(reply) if reply.status == GeneralStatus::Success => {
-                Ok(Input::Succeeded { data: reply.data.to_vec(), size: job.plan.res_data_size() })
-            }
-            Ok(reply) => {
-                let words = reply.additional.words().collect();
-                Ok(Input::Failed(Failure::RefusedByDevice(reply.status, words)))
-            }
-            Err(error) => Err(error.shifted(at)),
-        };
-        match input {
-            Ok(input) => {
-                cx.out.push_back(Output::Read(job.block, frame, Some(message)));
-                cx.out.push_back(Output::Block(job.block, input));
-            }
-            Err(error) => {
-                self.disconnect(cx);
-                fail(&job, Failure::Malformed(error), frame, Some(message), cx);
-            }
-        }
-    }
-
-    fn status(&mut self, status: EncapsulationStatus, frame: Vec<u8>, cx: &mut Context<'_>) {
-        let Some(Outstanding { mut job, .. }) = self.outstanding.take() else { return };
-        if status == EncapsulationStatus::InvalidSessionHandle && !job.resent {
-            job.resent = true;
-            self.queue.push_front(job);
-            return self.disconnect(cx);
-        }
-        fail(&job, Failure::EncapsulationStatus(status), frame, None, cx);
-    }
-
     /// Ends an idle session; the target closes the connection.
     pub(super) fn close(&mut self, cx: &mut Context<'_>) {
         if !self.is_idle() {
@@ -378,7 +307,7 @@ impl Client {
     /// Nothing can be sent: everybody who waits for this endpoint hears why.
     fn fail_all(&mut self, failure: &Failure, cx: &mut Context<'_>) {
         let delay = MIN_BACK_OFF.0 << self.failures.min(5);
-        self.failures += 1;
+        self.failures = self.failures.saturating_add(1);
         self.retry_at = Some(cx.now + Millis(delay.min(MAX_BACK_OFF.0)));
         for job in self.queue.drain(..) {
             cx.out.push_back(Output::Block(job.block, Input::Failed(failure.clone())));
@@ -389,11 +318,6 @@ impl Client {
         self.next_context += 1;
         SenderContext::from(self.next_context)
     }
-}
-
-fn fail(job: &Job, failure: Failure, frame: Vec<u8>, message: Option<Vec<u8>>, cx: &mut Context<'_>) {
-    cx.out.push_back(Output::Read(job.block, frame, message));
-    cx.out.push_back(Output::Block(job.block, Input::Failed(failure)));
 }
 
 /// The target's own time limit: ours in whole seconds, rounded up.

@@ -1,0 +1,200 @@
+//! From a trigger to DN or ER: one step of one block, and everything that follows from it.
+
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use crate::config::{BlockId, Channel};
+use crate::engine::block::{BlockView, Effect, Input};
+use crate::engine::channel::Buffers;
+use crate::engine::client::Job;
+use crate::engine::entry::{Active, Entry};
+use crate::engine::event::Event;
+use crate::engine::failure::Failure;
+use crate::engine::time::{Instant, Millis};
+
+use super::Engine;
+
+/// Changes of the place in the queue are told to this many waiting blocks.
+const ANNOUNCED_POSITIONS: usize = 16;
+
+/// How long a block without a usable plan is busy: it fails at once.
+const NO_TIME: Millis = Millis(0);
+
+impl Engine {
+    pub(super) fn trigger(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let timeout = entry.plan.as_ref().map_or(NO_TIME, |plan| Millis::from(plan.ucmm_timeout_ms()));
+        if !entry.block.phase().is_busy() {
+            entry.request =
+                entry.plan.as_ref().map_or_else(|_| Arc::default(), |plan| plan.request().bytes().into());
+        }
+        self.step(block, Input::Trigger { deadline: now + timeout }, now);
+    }
+
+    /// A period has elapsed while IN is TRUE.
+    pub(super) fn cycle(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let target = entry.plan.as_ref().ok().map(|plan| plan.target());
+        if let Some(until) =
+            target.and_then(|target| self.clients.get(target)).and_then(|client| client.retry_at(now))
+        {
+            entry.trigger.hold_back(until);
+        }
+        if entry.trigger.take(now) {
+            self.trigger(block, now);
+        }
+    }
+
+    /// One step of one block, and everything that follows from it.
+    pub(super) fn step(&mut self, block: BlockId, input: Input, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let step = entry.step(input, now);
+        if let Some(edges) = step.changed {
+            let view = entry.glance();
+            let position = self.blocks.get(&block).map_or(0, |entry| self.position(block, entry));
+            let view = Box::new(BlockView { position, edges, ..view });
+            self.events.push_back(Event::Changed { block, view });
+        }
+        match step.effect {
+            Some(Effect::Enqueue) => self.enqueue(block, now),
+            Some(Effect::Release) => self.release(block, now),
+            None => {}
+        }
+        self.rearm(block);
+    }
+
+    pub(super) fn enqueue(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        self.next_shot += 1;
+        let plan = match &entry.plan {
+            Ok(plan) => Arc::clone(plan),
+            Err(invalid) => {
+                let failure = invalid.failure();
+                return self.step(block, Input::Failed(failure), now);
+            }
+        };
+        let channel = plan.channel();
+        entry.active = Some(Active {
+            shot: self.next_shot,
+            channel,
+            target: plan.target().clone(),
+            revision: entry.revision,
+            plan,
+            granted: false,
+        });
+        self.exchanges.insert(block, entry.exchange());
+        self.buffers(channel).enqueue(block);
+        self.grant(channel, now);
+        if self.buffers(channel).position(block) > 0 {
+            // Its trigger was announced before it stood in the queue.
+            self.announce_position(block);
+        }
+    }
+
+    /// A message has ended: its buffer is free, its client forgets it, and its owner hears of it.
+    pub(super) fn release(&mut self, block: BlockId, now: Instant) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        entry.trigger.ended(now);
+        let view = Box::new(entry.view());
+        let run_once = core::mem::take(&mut entry.run_once);
+        let active = entry.active.take();
+        let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
+        let changed_target = active.as_ref().is_some_and(|active| planned != Some(&active.target));
+        let shot = active.as_ref().map_or(self.next_shot, |active| active.shot);
+        let exchange = Box::new(self.exchanges.remove(&block).unwrap_or_default());
+        self.events.push_back(Event::Finished { block, shot, view, exchange });
+        if run_once {
+            self.step(block, Input::Fall, now);
+        }
+        if let Some(active) = active {
+            self.buffers(active.channel).release(block);
+            self.client(&active.target, now, |client, cx| client.withdraw(block, cx));
+            self.grant(active.channel, now);
+            if changed_target {
+                self.retire(&active.target, now);
+            }
+        }
+    }
+
+    pub(super) fn grant(&mut self, channel: Channel, now: Instant) {
+        if core::mem::replace(&mut self.buffers(channel).granting, true) {
+            return;
+        }
+        let mut granted = false;
+        while let Some(block) = self.buffers(channel).poll_grant() {
+            granted = true;
+            self.submit(block, now);
+        }
+        self.buffers(channel).granting = false;
+        if granted {
+            self.announce_positions(channel);
+        }
+    }
+
+    pub(super) fn submit(&mut self, block: BlockId, now: Instant) {
+        let Some(active) = self.blocks.get_mut(&block).and_then(|entry| entry.active.as_mut()) else {
+            return;
+        };
+        active.granted = true;
+        let (target, channel) = (active.target.clone(), active.channel);
+        let job = Job {
+            block,
+            shot: active.shot,
+            revision: active.revision,
+            plan: Arc::clone(&active.plan),
+            resent: false,
+        };
+        if channel == Channel::Controller && !self.session_for_controller(&target, now) {
+            self.step(block, Input::BufferGranted, now);
+            return self.step(block, Input::Failed(Failure::Limit), now);
+        }
+        self.clients.entry(target.clone()).or_default();
+        self.client(&target, now, |client, cx| {
+            client.controller |= channel == Channel::Controller;
+            client.submit(job, cx);
+        });
+    }
+
+    pub(super) fn announce_positions(&mut self, channel: Channel) {
+        let waiting: Vec<_> = self.buffers(channel).waiting().take(ANNOUNCED_POSITIONS).collect();
+        for block in waiting {
+            self.announce_position(block);
+        }
+    }
+
+    pub(super) fn announce_position(&mut self, block: BlockId) {
+        if let Some(entry) = self.blocks.get(&block) {
+            let view = Box::new(BlockView { position: self.position(block, entry), ..entry.glance() });
+            self.events.push_back(Event::Changed { block, view });
+        }
+    }
+
+    pub(super) fn position(&self, block: BlockId, entry: &Entry) -> usize {
+        match &entry.active {
+            Some(active) if active.granted => {
+                self.clients.get(&active.target).map_or(0, |client| client.position(block))
+            }
+            Some(Active { channel: Channel::Controller, .. }) => self.controller.position(block),
+            Some(Active { channel: Channel::Monitor, .. }) => self.monitor.position(block),
+            None => 0,
+        }
+    }
+
+    pub(super) const fn buffers(&mut self, channel: Channel) -> &mut Buffers {
+        match channel {
+            Channel::Controller => &mut self.controller,
+            Channel::Monitor => &mut self.monitor,
+        }
+    }
+
+    pub(super) fn rearm(&mut self, block: BlockId) {
+        let Some(entry) = self.blocks.get_mut(&block) else { return };
+        let due = entry.due();
+        if due != entry.wake {
+            entry.wake.map(|old| self.timers.remove(&(old, block)));
+            due.map(|at| self.timers.insert((at, block)));
+            entry.wake = due;
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Calls into clients, what they want done, and who may have a session.
+
+use alloc::collections::VecDeque;
+
+use crate::config::Target;
+use crate::engine::channel::CONTROLLER_SESSIONS;
+use crate::engine::client::{Client, Context, Output};
+use crate::engine::event::{Event, LinkId};
+use crate::engine::time::Instant;
+
+use super::Engine;
+
+impl Engine {
+    /// Whether the controller may have a session with this target; an idle one is given up if need be.
+    pub(super) fn session_for_controller(&mut self, target: &Target, now: Instant) -> bool {
+        let counts = |client: &Client| client.controller && client.holds_session();
+        if self.clients.get(target).is_some_and(counts) {
+            return true;
+        }
+        if self.clients.values().filter(|client| counts(client)).count() < CONTROLLER_SESSIONS {
+            return true;
+        }
+        let idle = self.clients.iter().filter(|(_, client)| counts(client) && client.is_idle());
+        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
+        oldest.is_some_and(|target| {
+            self.client(&target, now, Client::close);
+            true
+        })
+    }
+
+    /// Closes the session with a target that no block needs any more, and forgets it once it is closed.
+    pub(super) fn retire(&mut self, target: &Target, now: Instant) {
+        let needed = self.blocks.values().any(|entry| {
+            let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
+            planned == Some(target) || entry.active.as_ref().is_some_and(|active| active.target == *target)
+        });
+        if !needed {
+            self.client(target, now, Client::close);
+            if self.clients.get(target).is_some_and(|client| client.link_id().is_none()) {
+                self.clients.remove(target);
+            }
+        }
+    }
+
+    pub(super) fn link<T>(
+        &mut self,
+        link: LinkId,
+        now: Instant,
+        call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
+    ) -> Option<T> {
+        let target = self.links.get(&link)?.clone();
+        if self.clients.get(&target).and_then(Client::link_id) != Some(link) {
+            return None;
+        }
+        self.client(&target, now, call)
+    }
+
+    /// Calls a client and carries out what it wants.
+    pub(super) fn client<T>(
+        &mut self,
+        target: &Target,
+        now: Instant,
+        call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
+    ) -> Option<T> {
+        let mut out = VecDeque::new();
+        let client = self.clients.get_mut(target)?;
+        let result = call(client, &mut Context { now, next_link: &mut self.next_link, out: &mut out });
+        for output in out {
+            self.output(target, output, now);
+        }
+        Some(result)
+    }
+
+    pub(super) fn output(&mut self, target: &Target, output: Output, now: Instant) {
+        match output {
+            Output::Connect(link) => {
+                self.links.insert(link, target.clone());
+                self.events.push_back(Event::Connect { link, target: target.clone() });
+            }
+            Output::Disconnect(link) => {
+                self.links.remove(&link);
+                self.events.push_back(Event::Disconnect { link });
+            }
+            Output::Closing(link, until) => self.closing.push_back((until, link)),
+            Output::Transmit(link) => self.events.push_back(Event::Transmit { link }),
+            Output::Wants(wants) => self.events.push_back(Event::Wants(wants)),
+            Output::Block(block, input) => self.step(block, input, now),
+            Output::Wrote(block, frame) => {
+                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                    exchange.request_frame = Some(frame);
+                }
+            }
+            Output::Read(block, frame, response) => {
+                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                    exchange.response_frame = Some(frame);
+                    exchange.response = response;
+                }
+            }
+        }
+    }
+}

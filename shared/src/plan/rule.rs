@@ -1,0 +1,285 @@
+//! What can be wrong with a configuration, and how it is said.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt;
+
+use crate::config::{HexErrorKind, PathError};
+
+/// What is wrong. The page translates [`Rule::key`] with [`Rule::arguments`]; `Display` is the English text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// A number outside its range.
+    OutOfRange {
+        /// What was given.
+        value: i64,
+        /// The smallest that is allowed.
+        min: i64,
+        /// The biggest that is allowed.
+        max: i64,
+    },
+    /// A text that must not be empty.
+    Missing,
+    /// A text that is too long, in characters.
+    TextTooLong {
+        /// How long it may be.
+        max: usize,
+    },
+    /// A kind of block that this version does not know.
+    UnknownKind,
+    /// A member that this version does not know: kept, not used.
+    UnknownMember,
+    /// The path cannot be used.
+    Path(PathError),
+    /// The path has a TCP port; a controller takes none.
+    TcpPort {
+        /// The port.
+        port: u16,
+    },
+    /// The path has a name; a controller takes addresses only.
+    HostName,
+    /// Not built yet; never sent another way.
+    NotAvailable(Feature),
+    /// The request data is not readable as hexadecimal.
+    Hex {
+        /// Character position, counted from 0.
+        position: usize,
+        /// What is wrong there.
+        kind: HexErrorKind,
+    },
+    /// More request data than a message can carry.
+    TooMuchData {
+        /// Bytes in `ReqData`.
+        length: usize,
+        /// Bytes that are allowed.
+        max: usize,
+    },
+    /// `ReqLength` is over the number of bytes in `ReqData`.
+    LengthOverData {
+        /// Bytes in `ReqData`.
+        length: usize,
+    },
+    /// `ReqLength` is under the number of bytes in `ReqData`: the rest is not sent.
+    LengthUnderData {
+        /// Bytes that are sent.
+        sent: usize,
+        /// Bytes in `ReqData`.
+        length: usize,
+    },
+    /// The whole message is longer than most devices take unconnected.
+    LongMessage {
+        /// Bytes of the message.
+        length: usize,
+        /// Bytes that are usual.
+        max: usize,
+    },
+    /// A timeout was moved into its range.
+    Clamped {
+        /// What was given.
+        value: i64,
+        /// What is used, in ms.
+        used: u32,
+    },
+    /// The manual types `TriggerType` as USINT.
+    OverUsint,
+    /// Reserved; the manual gives it no meaning.
+    Reserved,
+    /// `Cancel` is an input of the running block; it is stored FALSE.
+    CancelIsAnInput,
+    /// Fewer entries in `MemberId` than `MemberCnt`, or more than three.
+    MemberIdCount {
+        /// Entries that are there.
+        found: usize,
+    },
+    /// `Resume` is for services that are known to read.
+    ResumeNeedsRead,
+    /// `ConnClose` acts on class 3 connections only.
+    ConnCloseUnconnected,
+}
+
+/// What this version cannot do yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// A second hop in the path.
+    Route,
+    /// `CipConnMode` 1.
+    Class3,
+}
+
+impl Rule {
+    /// Every key that [`Self::key`] can return: the page has a text for each.
+    pub const KEYS: [&'static str; 33] = [
+        "out_of_range",
+        "missing",
+        "text_too_long",
+        "unknown_kind",
+        "unknown_member",
+        "path_empty",
+        "path_too_long",
+        "path_half_hop",
+        "path_too_many_hops",
+        "path_serial_port",
+        "path_bad_port",
+        "path_bad_address",
+        "path_bad_route_port",
+        "path_bad_slot",
+        "tcp_port",
+        "host_name",
+        "not_available",
+        "not_available_route",
+        "not_available_class_3",
+        "hex_not_hex",
+        "hex_odd_digits",
+        "too_much_data",
+        "length_over_data",
+        "length_under_data",
+        "long_message",
+        "clamped",
+        "over_usint",
+        "reserved",
+        "cancel_is_an_input",
+        "member_id_count",
+        "resume_needs_read",
+        "conn_close_unconnected",
+        "unreadable_number",
+    ];
+
+    /// The rule's stable name in JSON.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::NotAvailable(_) => "not_available",
+            _ => self.key(),
+        }
+    }
+
+    /// The key of the rule's text.
+    pub const fn key(&self) -> &'static str {
+        match self {
+            Self::OutOfRange { .. } => "out_of_range",
+            Self::Missing => "missing",
+            Self::TextTooLong { .. } => "text_too_long",
+            Self::UnknownKind => "unknown_kind",
+            Self::UnknownMember => "unknown_member",
+            Self::Path(error) => match error {
+                PathError::Empty => "path_empty",
+                PathError::TooLong => "path_too_long",
+                PathError::HalfHop => "path_half_hop",
+                PathError::TooManyHops => "path_too_many_hops",
+                PathError::SerialPort => "path_serial_port",
+                PathError::BadPort => "path_bad_port",
+                PathError::BadAddress => "path_bad_address",
+                PathError::BadRoutePort => "path_bad_route_port",
+                PathError::BadSlot => "path_bad_slot",
+            },
+            Self::TcpPort { .. } => "tcp_port",
+            Self::HostName => "host_name",
+            Self::NotAvailable(Feature::Route) => "not_available_route",
+            Self::NotAvailable(Feature::Class3) => "not_available_class_3",
+            Self::Hex { kind: HexErrorKind::NotHex(_), .. } => "hex_not_hex",
+            Self::Hex { kind: HexErrorKind::OddDigits, .. } => "hex_odd_digits",
+            Self::TooMuchData { .. } => "too_much_data",
+            Self::LengthOverData { .. } => "length_over_data",
+            Self::LengthUnderData { .. } => "length_under_data",
+            Self::LongMessage { .. } => "long_message",
+            Self::Clamped { .. } => "clamped",
+            Self::OverUsint => "over_usint",
+            Self::Reserved => "reserved",
+            Self::CancelIsAnInput => "cancel_is_an_input",
+            Self::MemberIdCount { .. } => "member_id_count",
+            Self::ResumeNeedsRead => "resume_needs_read",
+            Self::ConnCloseUnconnected => "conn_close_unconnected",
+        }
+    }
+
+    /// The values that the rule's text names.
+    pub fn arguments(&self) -> Vec<(&'static str, String)> {
+        let (first, second, third) = match self {
+            Self::OutOfRange { value, min, max } => (
+                Some(("value", value.to_string())),
+                Some(("min", min.to_string())),
+                Some(("max", max.to_string())),
+            ),
+            Self::TextTooLong { max } => (Some(("max", max.to_string())), None, None),
+            Self::TcpPort { port } => (Some(("port", port.to_string())), None, None),
+            Self::Hex { position, kind: HexErrorKind::NotHex(found) } => {
+                (Some(("position", (position + 1).to_string())), Some(("found", found.to_string())), None)
+            }
+            Self::Hex { position, .. } => (Some(("position", (position + 1).to_string())), None, None),
+            Self::TooMuchData { length, max } | Self::LongMessage { length, max } => {
+                (Some(("length", length.to_string())), Some(("max", max.to_string())), None)
+            }
+            Self::LengthOverData { length } => (Some(("length", length.to_string())), None, None),
+            Self::LengthUnderData { sent, length } => {
+                (Some(("sent", sent.to_string())), Some(("length", length.to_string())), None)
+            }
+            Self::Clamped { value, used } => {
+                (Some(("value", value.to_string())), Some(("used", used.to_string())), None)
+            }
+            Self::MemberIdCount { found } => (Some(("found", found.to_string())), None, None),
+            _ => (None, None, None),
+        };
+        [first, second, third].into_iter().flatten().collect()
+    }
+}
+
+impl fmt::Display for Rule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange { value, min, max } => write!(f, "{value} is outside {min} to {max}"),
+            Self::Missing => f.write_str("must not be empty"),
+            Self::TextTooLong { max } => write!(f, "at most {max} characters"),
+            Self::UnknownKind => f.write_str("this version knows MSG_CIPGENERIC only"),
+            Self::UnknownMember => f.write_str("unknown member: kept, but not used"),
+            Self::Path(error) => f.write_str(path_text(*error)),
+            Self::TcpPort { port } => write!(f, "TCP port {port}: a controller always uses 44818"),
+            Self::HostName => f.write_str("a controller takes an IP address here, not a name"),
+            Self::NotAvailable(Feature::Route) => {
+                f.write_str("a second hop (route) is not available yet; nothing is sent")
+            }
+            Self::NotAvailable(Feature::Class3) => {
+                f.write_str("class 3 connections are not available yet; nothing is sent")
+            }
+            Self::Hex { position, kind: HexErrorKind::NotHex(found) } => {
+                write!(f, "'{found}' at character {} is not a hexadecimal digit", position + 1)
+            }
+            Self::Hex { position, kind: HexErrorKind::OddDigits } => {
+                write!(f, "half a byte at character {}: each byte needs two hexadecimal digits", position + 1)
+            }
+            Self::TooMuchData { length, max } => write!(f, "{length} bytes; a message carries at most {max}"),
+            Self::LengthOverData { length } => write!(f, "ReqData has only {length} bytes"),
+            Self::LengthUnderData { sent, length } => {
+                write!(f, "only the first {sent} of {length} bytes are sent")
+            }
+            Self::LongMessage { length, max } => {
+                write!(f, "the message has {length} bytes; many devices take at most {max} unconnected")
+            }
+            Self::Clamped { value, used } => write!(f, "{value} ms is outside the range; {used} ms is used"),
+            Self::OverUsint => {
+                f.write_str("the manual types TriggerType as USINT (0 to 255) but allows 65535")
+            }
+            Self::Reserved => f.write_str("reserved: the manual gives it no meaning"),
+            Self::CancelIsAnInput => {
+                f.write_str("Cancel is an input of the running block; it is stored FALSE")
+            }
+            Self::MemberIdCount { found } => write!(f, "MemberId has {found} entries; it needs three"),
+            Self::ResumeNeedsRead => {
+                f.write_str("Resume is allowed for services that are known to read only")
+            }
+            Self::ConnCloseUnconnected => f.write_str("acts on class 3 connections only (CipConnMode 1)"),
+        }
+    }
+}
+
+const fn path_text(error: PathError) -> &'static str {
+    match error {
+        PathError::Empty => "the path is empty; write 4,192.168.1.100",
+        PathError::TooLong => "the path has more than 80 characters",
+        PathError::HalfHop => "each hop is a port and an address, such as 4,192.168.1.100",
+        PathError::TooManyHops => "at most two hops",
+        PathError::SerialPort => "a serial port: only the Ethernet port 4 can be used",
+        PathError::BadPort => "not a port of the controller: Ethernet is port 4, as in 4,192.168.1.100",
+        PathError::BadAddress => "not an IP address or host name, such as 192.168.1.100",
+        PathError::BadRoutePort => "the second hop's port is 1 to 14; the backplane is 1",
+        PathError::BadSlot => "the second hop's slot is 0 to 255",
+    }
+}
