@@ -35,7 +35,7 @@ async fn blocks_are_duplicated_renamed_copied_pasted_and_deleted() {
         (&Value::from("the copy"), &Value::from(7))
     );
     user.shot("copy").await;
-    user.click("Cancel").await;
+    user.click("Close").await;
 
     user.click("Paste").await;
     user.fill("JSON of a block", "{\"name\":").await;

@@ -76,3 +76,17 @@ async fn text_that_is_no_command_is_answered_and_the_websocket_stays_open() {
     let answer = viewer.command(serde_json::json!({ "type": "run", "block": "b99" })).await;
     assert_eq!(answer["problem"]["code"], "not_found", "{answer}");
 }
+
+#[tokio::test]
+async fn the_page_loads_nothing_from_elsewhere() {
+    let relay = Relay::start().await;
+    let response = reqwest::get(relay.page()).await.unwrap();
+    assert_eq!(response.status(), 200);
+    let policy = response.headers()["content-security-policy"].to_str().unwrap().to_string();
+    assert!(policy.contains("default-src 'none'") || policy.contains("default-src 'self'"), "{policy}");
+    for forbidden in ["'unsafe-inline'", "'unsafe-eval'", "*", "http:", "https:"] {
+        assert!(!policy.contains(forbidden), "{forbidden} in {policy}");
+    }
+    let page = response.text().await.unwrap();
+    assert!(!page.contains("http://") && !page.contains("https://"), "{page}");
+}

@@ -11,5 +11,6 @@ mod peers;
 mod permit;
 mod persistence;
 mod reconnect;
+mod shutdown;
 mod simulated_device;
 mod websocket;

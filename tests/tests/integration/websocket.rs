@@ -82,6 +82,25 @@ async fn a_busy_block_answers_busy_and_ends_its_first_run() {
 }
 
 #[tokio::test]
+async fn in_runs_once_and_holds_en_until_it_falls() {
+    let relay = Relay::start().await;
+    let plc = FakePlc::start(fake_plc::answering(&[1])).await;
+    let id = relay.rest.create(&block::product_name(&plc.path())).await;
+    let mut viewer = relay.viewer().await;
+    viewer.set_in(&id, true).await;
+    let done = |status: &serde_json::Value| status["Status"]["StatusBits"] == 17;
+    viewer.status_where("DN, and EN with IN", PATIENCE, &id, done).await;
+    let run = viewer.command(json!({ "type": "run", "block": id })).await;
+    assert_eq!(run["problem"]["code"], "busy", "IN is TRUE: {run}");
+    viewer.set_in(&id, true).await; // no edge
+    viewer.set_in(&id, false).await;
+    let fell = |status: &serde_json::Value| status["Status"]["StatusBits"] == 16;
+    let status = viewer.status_where("EN falls with IN", PATIENCE, &id, fell).await;
+    assert_eq!((&status["runs"], &status["Q"]), (&json!(1), &json!(true)), "{status}");
+    assert_eq!(plc.messages().len(), 1);
+}
+
+#[tokio::test]
 async fn cancel_without_a_run_is_nothing() {
     let relay = Relay::start().await;
     let id = relay.rest.create(&block::product_name("0,0")).await;
