@@ -117,6 +117,13 @@ impl Browser {
         .await;
     }
 
+    /// Gives the page another size, in px.
+    pub async fn resize(&self, width: u32, height: u32) {
+        let size =
+            serde_json::json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.chromium("Emulation.setDeviceMetricsOverride", size).await;
+    }
+
     /// Moves the pointer over what an XPath finds.
     pub async fn point_at(&self, xpath: &str) {
         self.until(&format!("{xpath} can be pointed at"), PATIENCE, async |driver| {

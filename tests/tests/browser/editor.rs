@@ -81,11 +81,11 @@ async fn bad_input_is_a_finding_at_its_field_and_nothing_is_sent() {
 #[tokio::test]
 async fn every_byte_says_what_it_is() {
     let relay = Relay::start().await;
-    let id = relay.rest.create(&block::product_name("0,0")).await;
+    let id = relay.rest.create(&block::with(block::product_name("0,0"), "/name", "product-name")).await;
     relay.rest.run(&id).await;
     let journey = Journey::start("bytes").await;
     let mut user = journey.open("user", &relay.page()).await;
-    user.click("get-1-1-7").await;
+    user.click("product-name").await;
     user.point_at(&byte("request-bytes", "0E")).await;
     let pointed =
         user.find("what 0E is", &explanation("request-bytes", "Get_Attribute_Single"), PATIENCE).await;

@@ -5,6 +5,7 @@ mod cyclic;
 mod deck;
 mod editor;
 mod first_start;
+mod looks;
 mod monitor;
 mod reconnect;
 mod write;
