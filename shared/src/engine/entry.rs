@@ -43,6 +43,8 @@ pub(super) struct Active {
     pub(super) revision: u64,
     pub(super) plan: Arc<MessagePlan>,
     pub(super) granted: bool,
+    /// What has gone over the wire so far.
+    pub(super) exchange: Exchange,
 }
 
 /// A stored configuration that has errors.
@@ -114,11 +116,6 @@ impl Entry {
     /// The block with all edges of its last message.
     pub(super) fn view(&self) -> BlockView {
         BlockView { edges: self.edges.clone(), edges_dropped: self.edges_dropped, ..self.glance() }
-    }
-
-    /// What an exchange begins with.
-    pub(super) fn exchange(&self) -> Exchange {
-        Exchange { request: self.request.to_vec(), ..Exchange::default() }
     }
 
     /// When the engine has to look at this block: its timeout, or its next trigger.

@@ -9,7 +9,7 @@ use crate::engine::block::{BlockView, Effect, Input};
 use crate::engine::channel::Buffers;
 use crate::engine::client::Job;
 use crate::engine::entry::{Active, Entry};
-use crate::engine::event::Event;
+use crate::engine::event::{Event, Exchange};
 use crate::engine::failure::Failure;
 use crate::engine::time::{Instant, Millis};
 
@@ -82,8 +82,8 @@ impl Engine {
             revision: entry.revision,
             plan,
             granted: false,
+            exchange: Exchange { request: entry.request.to_vec(), ..Exchange::default() },
         });
-        self.exchanges.insert(block, entry.exchange());
         self.buffers(channel).enqueue(block);
         self.grant(channel, now);
         if self.buffers(channel).position(block) > 0 {
@@ -98,11 +98,12 @@ impl Engine {
         entry.trigger.ended(now);
         let view = Box::new(entry.view());
         let run_once = core::mem::take(&mut entry.run_once);
-        let active = entry.active.take();
+        let mut active = entry.active.take();
         let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
         let changed_target = active.as_ref().is_some_and(|active| planned != Some(&active.target));
         let shot = active.as_ref().map_or(self.next_shot, |active| active.shot);
-        let exchange = Box::new(self.exchanges.remove(&block).unwrap_or_default());
+        let exchange =
+            Box::new(active.as_mut().map(|active| core::mem::take(&mut active.exchange)).unwrap_or_default());
         self.events.push_back(Event::Finished { block, shot, view, exchange });
         if run_once {
             self.step(block, Input::Fall, now);

@@ -14,7 +14,7 @@ use crate::engine::block::{BlockView, Input};
 use crate::engine::channel::Buffers;
 use crate::engine::client::Client;
 use crate::engine::entry::{Entry, Invalid};
-use crate::engine::event::{Event, Exchange, LinkId, Wants};
+use crate::engine::event::{Event, LinkId, Wants};
 use crate::engine::failure::ConnectError;
 use crate::engine::time::Instant;
 
@@ -22,7 +22,6 @@ use crate::engine::time::Instant;
 #[derive(Debug)]
 pub struct Engine {
     blocks: BTreeMap<BlockId, Entry>,
-    exchanges: BTreeMap<BlockId, Exchange>,
     controller: Buffers,
     monitor: Buffers,
     clients: BTreeMap<Target, Client>,
@@ -57,7 +56,6 @@ impl Engine {
     pub const fn new() -> Self {
         Self {
             blocks: BTreeMap::new(),
-            exchanges: BTreeMap::new(),
             controller: Buffers::controller(),
             monitor: Buffers::monitor(),
             clients: BTreeMap::new(),
@@ -102,7 +100,6 @@ impl Engine {
         self.step(block, Input::Cancel, now);
         let Some(entry) = self.blocks.remove(&block) else { return };
         entry.wake.map(|wake| self.timers.remove(&(wake, block)));
-        self.exchanges.remove(&block);
         if let Ok(plan) = entry.plan {
             self.retire(plan.target(), now);
         }
@@ -276,6 +273,6 @@ mod tests {
             assert_eq!((engine.clients.len(), engine.links.len()), (0, 0), "round {round}");
         }
         engine.remove(A, Instant(9));
-        assert!(engine.timers.is_empty() && engine.exchanges.is_empty());
+        assert!(engine.timers.is_empty());
     }
 }

@@ -2,10 +2,10 @@
 
 use alloc::collections::VecDeque;
 
-use crate::config::Target;
+use crate::config::{BlockId, Target};
 use crate::engine::channel::CONTROLLER_SESSIONS;
 use crate::engine::client::{Client, Context, Output};
-use crate::engine::event::{Event, LinkId};
+use crate::engine::event::{Event, Exchange, LinkId};
 use crate::engine::time::Instant;
 
 use super::Engine;
@@ -86,16 +86,22 @@ impl Engine {
             Output::Wants(wants) => self.events.push_back(Event::Wants(wants)),
             Output::Block(block, input) => self.step(block, input, now),
             Output::Wrote(block, frame) => {
-                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                if let Some(exchange) = self.exchange(block) {
                     exchange.request_frame = Some(frame);
                 }
             }
             Output::Read(block, frame, response) => {
-                if let Some(exchange) = self.exchanges.get_mut(&block) {
+                if let Some(exchange) = self.exchange(block) {
                     exchange.response_frame = Some(frame);
                     exchange.response = response;
                 }
             }
         }
+    }
+
+    /// What is known of the wire of the message under way.
+    fn exchange(&mut self, block: BlockId) -> Option<&mut Exchange> {
+        let active = self.blocks.get_mut(&block)?.active.as_mut()?;
+        Some(&mut active.exchange)
     }
 }
