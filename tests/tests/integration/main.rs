@@ -13,4 +13,5 @@ mod persistence;
 mod reconnect;
 mod shutdown;
 mod simulated_device;
+mod slow_viewer;
 mod websocket;
