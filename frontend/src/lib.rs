@@ -32,7 +32,7 @@ pub mod workbench;
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
-        browser::show_crash(&rust_i18n::t!("crash", place = place));
+        browser::show_crash(&i18n::filled("crash", &[("place", &place)]));
     }));
     yew::Renderer::<app::App>::new().render();
 }

@@ -18,6 +18,7 @@ use yew::{Callback, platform::spawn_local};
 use crate::{
     demo::Demo,
     editor::{Draft, DraftStore, Edit},
+    i18n::tr,
     net::{Relay, rest},
     notice::{Notice, NoticeStore},
     store::{DeckId, RowStore},
@@ -245,7 +246,7 @@ impl Workbench {
 
     fn answer(&self, id: DeckId, result: Result<(), CommandError>) {
         if let Err(CommandError::Busy) = result {
-            let problem = rest::unreachable(rust_i18n::t!("problem.busy").into_owned());
+            let problem = rest::unreachable(tr!("problem.busy").to_string());
             self.0.notices.put(id, Notice::Problem(Rc::new(Problem { code: ProblemCode::Busy, ..problem })));
         }
     }

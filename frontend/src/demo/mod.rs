@@ -26,7 +26,8 @@ struct Inner {
     rows: RowStore,
     bench: RefCell<Bench>,
     names: RefCell<BTreeMap<DeckId, BlockId>>,
-    last: RefCell<BTreeMap<BlockId, LastSuccess>>,
+    /// The last success, and after which run.
+    last: RefCell<BTreeMap<BlockId, (u64, LastSuccess)>>,
     timer: RefCell<Option<Timeout>>,
 }
 
@@ -44,15 +45,13 @@ impl Demo {
 
     /// Runs a block once.
     pub fn run(&self, id: DeckId, plan: MessagePlan, confirmed: bool) -> Result<(), CommandError> {
-        let block = self.name(id);
-        self.0.bench.borrow_mut().put(block, plan, confirmed);
+        let block = self.put(id, plan, confirmed);
         self.command(|bench| bench.run(block))
     }
 
     /// Sets IN to TRUE.
     pub fn start(&self, id: DeckId, plan: MessagePlan, confirmed: bool) -> Result<(), CommandError> {
-        let block = self.name(id);
-        self.0.bench.borrow_mut().put(block, plan, confirmed);
+        let block = self.put(id, plan, confirmed);
         self.command(|bench| bench.set_in(block, true))
     }
 
@@ -102,13 +101,26 @@ impl Demo {
         self.arm();
     }
 
+    /// Gives the engine a block's message. The last good value of another message says nothing about it.
+    fn put(&self, id: DeckId, plan: MessagePlan, confirmed: bool) -> BlockId {
+        let block = self.name(id);
+        let request = write_hex(&plan.request().bytes());
+        self.0.last.borrow_mut().retain(|name, (_, last)| *name != block || last.request == request);
+        self.0.bench.borrow_mut().put(block, plan, confirmed);
+        block
+    }
+
     fn changed(&self, block: BlockId, view: &BlockView) {
         let at = browser::wall_clock();
         let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
-        if status.q {
-            self.0.last.borrow_mut().insert(block, LastSuccess::of(&status, at));
+        let mut all = self.0.last.borrow_mut();
+        // A status changes after its success, too: when IN falls.
+        let is_new = all.get(&block).is_none_or(|(runs, _)| *runs != status.runs);
+        if status.q && is_new {
+            all.insert(block, (status.runs, LastSuccess::of(&status, at)));
         }
-        status.last = self.0.last.borrow().get(&block).cloned();
+        status.last = all.get(&block).map(|(_, last)| last.clone());
+        drop(all);
         if let Some(id) = self.id(block) {
             self.0.rows.put_status(id, status);
         }

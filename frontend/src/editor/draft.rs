@@ -87,20 +87,22 @@ impl Draft {
 
     /// A message, if the draft can be sent, and everything that is to be said about it.
     pub fn check(&self) -> (Option<MessagePlan>, Vec<Remark>) {
-        let unreadable: BTreeMap<&Field, NumberError> =
+        let unreadable: Vec<_> =
             self.typed.iter().filter_map(|(field, text)| Some((field, read(field, text).err()?))).collect();
         let (plan, findings) = MessagePlan::parse(&self.config);
-        let known =
-            findings.iter().filter(|finding| !unreadable.contains_key(&finding.field)).map(Remark::from_rule);
         let mut remarks: Vec<_> =
-            unreadable.iter().map(|(field, error)| Remark::unreadable(field, *error)).chain(known).collect();
+            unreadable.iter().map(|(field, error)| Remark::unreadable(field, *error)).collect();
+        for finding in &findings {
+            if unreadable.iter().all(|(field, _)| **field != finding.field) {
+                remarks.push(Remark::from_rule(finding));
+            }
+        }
         for refused in &self.refused {
             let remark = Remark::from_relay(refused);
             if remarks.iter().all(|other| (&other.field, &other.rule) != (&remark.field, &remark.rule)) {
                 remarks.push(remark);
             }
         }
-        remarks.sort_by_key(|remark| remark.severity);
         let sendable = remarks.iter().all(|remark| remark.severity != Severity::Error);
         (plan.filter(|_| sendable), remarks)
     }

@@ -91,35 +91,43 @@ impl fmt::Debug for DraftStore {
 /// One draft as text.
 #[derive(Serialize, Deserialize)]
 struct Kept {
+    id: String,
     revision: Option<u64>,
     config: MsgCipGeneric,
-    typed: BTreeMap<String, String>,
+    typed: Vec<(String, String)>,
 }
 
 fn write(drafts: &BTreeMap<DeckId, Rc<Draft>>) -> String {
-    let kept: BTreeMap<String, Kept> = drafts
-        .iter()
-        .map(|(id, draft)| {
-            let typed = draft.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect();
-            (id.to_string(), Kept { revision: draft.revision, config: draft.config.clone(), typed })
-        })
-        .collect();
+    let keep = |(id, draft): (&DeckId, &Rc<Draft>)| Kept {
+        id: id.to_string(),
+        revision: draft.revision,
+        config: draft.config.clone(),
+        typed: draft.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect(),
+    };
+    let kept: Vec<_> = drafts.iter().map(keep).collect();
     serde_json::to_string(&kept).unwrap_or_default()
 }
 
 fn read(text: &str) -> BTreeMap<DeckId, Rc<Draft>> {
-    let kept: BTreeMap<String, serde_json::Value> = serde_json::from_str(text).unwrap_or_default();
-    kept.into_iter()
-        .filter_map(|(id, value)| {
-            let kept: Kept = serde_json::from_value(value).ok()?;
-            Some((id.parse().ok()?, Rc::new(Draft::restored(kept.config, kept.revision, typed(&kept.typed)))))
-        })
-        .collect()
+    let kept: Vec<serde_json::Value> = serde_json::from_str(text).unwrap_or_default();
+    let mut drafts = BTreeMap::new();
+    for value in kept {
+        let Ok(kept) = serde_json::from_value::<Kept>(value) else { continue };
+        let Ok(id) = kept.id.parse() else { continue };
+        drafts.insert(id, Rc::new(Draft::restored(kept.config, kept.revision, typed(&kept.typed))));
+    }
+    drafts
 }
 
-fn typed(kept: &BTreeMap<String, String>) -> BTreeMap<Field, String> {
-    let field = |field: Field| kept.get(&field.to_string()).cloned().map(|text| (field, text));
-    number_fields().into_iter().filter_map(field).collect()
+fn typed(kept: &[(String, String)]) -> BTreeMap<Field, String> {
+    let mut typed = BTreeMap::new();
+    for field in number_fields() {
+        let name = field.to_string();
+        if let Some((_, text)) = kept.iter().find(|(kept, _)| *kept == name) {
+            typed.insert(field, text.clone());
+        }
+    }
+    typed
 }
 
 const fn new_number(id: DeckId) -> Option<u32> {
@@ -160,7 +168,7 @@ mod tests {
     fn one_unreadable_draft_does_not_cost_the_others() {
         let (store, text) = kept();
         store.put(DeckId::New(1), Draft::new(MsgCipGeneric::product_name("0,0"), None));
-        let broken = text.borrow().replacen('{', r#"{"new-2":{"config":1},"#, 1);
+        let broken = text.borrow().replacen('[', r#"[{"id":"new-2","config":1},"#, 1);
         assert_eq!(DraftStore::new(Some(&broken), Rc::new(|_| ())).ids(), [DeckId::New(1)]);
         assert!(DraftStore::new(Some("not json"), Rc::new(|_| ())).ids().is_empty());
     }

@@ -22,6 +22,7 @@ use super::{
 };
 use crate::{
     browser,
+    i18n::tr,
     store::{RowStore, Watch, Watchers},
 };
 
@@ -153,7 +154,7 @@ impl Relay {
         if sent {
             self.0.pending.borrow_mut().insert(id, refused);
         } else {
-            refused.emit(unreachable(rust_i18n::t!("problem.not_connected").into_owned()));
+            refused.emit(unreachable(tr!("problem.not_connected").to_string()));
         }
     }
 
@@ -191,7 +192,7 @@ impl Relay {
         *self.0.sequence.borrow_mut() = Sequence::default();
         let pending = std::mem::take(&mut *self.0.pending.borrow_mut());
         for refused in pending.into_values() {
-            refused.emit(unreachable(rust_i18n::t!("problem.connection_lost").into_owned()));
+            refused.emit(unreachable(tr!("problem.connection_lost").to_string()));
         }
         self.input(Input::Closed);
     }

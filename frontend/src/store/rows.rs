@@ -102,9 +102,9 @@ impl RowStore {
 
     /// The relay's whole state: replaces what was known of stored blocks.
     pub fn snapshot(&self, blocks: Vec<Block>, statuses: Vec<BlockStatus>) {
-        let known: BTreeSet<_> = blocks.iter().map(|block| block.id).collect();
+        let is_known = |id: &BlockId| blocks.iter().any(|block| block.id == *id);
         let gone: Vec<_> =
-            self.ids().iter().filter_map(|id| id.stored()).filter(|id| !known.contains(id)).collect();
+            self.ids().iter().filter_map(|id| id.stored()).filter(|id| !is_known(id)).collect();
         self.changes(statuses, blocks, &gone);
     }
 

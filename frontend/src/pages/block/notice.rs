@@ -115,9 +115,7 @@ fn compare(
 ) {
     if let (Some(mine), Some(theirs)) = (mine.as_object(), theirs.as_object()) {
         let nothing = serde_json::Value::Null;
-        let mut members: Vec<_> = mine.keys().chain(theirs.keys()).collect();
-        members.sort();
-        members.dedup();
+        let members = mine.keys().chain(theirs.keys().filter(|member| !mine.contains_key(*member)));
         for member in members {
             let path = if path.is_empty() { member.clone() } else { format!("{path}.{member}") };
             let (mine, theirs) =

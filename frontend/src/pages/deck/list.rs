@@ -36,7 +36,7 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
         }
     });
     let on_new = use_callback((bench.clone(), open.clone()), |_: MouseEvent, (bench, open)| {
-        let name = rust_i18n::t!("list.new_name").into_owned();
+        let name = tr!("list.new_name").to_string();
         open.emit(bench.add(MsgCipGeneric { name, ..MsgCipGeneric::product_name("0,0") }));
     });
     let on_duplicate =

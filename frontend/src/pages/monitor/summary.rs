@@ -1,36 +1,30 @@
 //! One quiet sentence about all blocks.
 
 use cipdeck_shared::engine::Phase;
-use gloo_timers::callback::Interval;
 use yew::prelude::*;
 
-use crate::{hooks::use_workbench, i18n::tr, store::RowStore};
+use crate::{
+    hooks::{use_ids, use_second, use_workbench},
+    i18n::tr,
+    store::{DeckId, RowStore},
+};
 
 /// `3 of 1,000 failing`: counted anew every second, and not read out each time.
 #[component]
 pub(super) fn Summary() -> Html {
     let bench = use_workbench();
-    let rows = bench.rows().clone();
-    let counts = use_state_eq(|| count(&rows));
-    use_effect_with(rows, {
-        let counts = counts.clone();
-        move |rows| {
-            let rows = rows.clone();
-            let ticks = Interval::new(1_000, move || counts.set(count(&rows)));
-            move || drop(ticks)
-        }
-    });
-    let (all, failing, busy) = *counts;
+    let ids = use_ids();
+    use_second(!ids.is_empty());
+    let (failing, busy) = count(bench.rows(), &ids);
     html! {
         <p class="summary" data-test="summary">
-            { tr!("monitor.summary", all = all, failing = failing, busy = busy) }
+            { tr!("monitor.summary", all = ids.len(), failing = failing, busy = busy) }
         </p>
     }
 }
 
-fn count(rows: &RowStore) -> (usize, usize, usize) {
-    let ids = rows.ids();
+fn count(rows: &RowStore, ids: &[DeckId]) -> (usize, usize) {
     let phases: Vec<_> = ids.iter().filter_map(|id| rows.row(*id)).map(|row| row.status.phase).collect();
     let of = |wanted: fn(Phase) -> bool| phases.iter().filter(|phase| wanted(**phase)).count();
-    (ids.len(), of(|phase| phase == Phase::Failed), of(Phase::is_busy))
+    (of(|phase| phase == Phase::Failed), of(Phase::is_busy))
 }
