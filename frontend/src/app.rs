@@ -11,7 +11,7 @@ use crate::{
     net::Relay,
     notice::NoticeStore,
     pages::{
-        connection::Connection, deck::DeckPage, help::HelpPage, monitor::MonitorPage, not_found::NotFoundPage,
+        connection::Connection, deck::DeckPage, help::HelpPage, monitor::MonitorPage, not_found::not_found,
     },
     route::Route,
     store::{DeckId, RowStore},
@@ -97,10 +97,10 @@ fn page(route: Route) -> Html {
         Route::Deck => html! { <DeckPage /> },
         Route::Block { id } => match id.parse::<DeckId>() {
             Ok(id) => html! { <DeckPage {id} /> },
-            Err(_) => html! { <NotFoundPage /> },
+            Err(_) => not_found(),
         },
         Route::Monitor => html! { <MonitorPage /> },
         Route::Help => html! { <HelpPage /> },
-        Route::NotFound => html! { <NotFoundPage /> },
+        Route::NotFound => not_found(),
     }
 }

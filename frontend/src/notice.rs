@@ -1,11 +1,11 @@
 //! What went wrong with a command, until the next one.
 
-use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{api::Problem, config::Block};
 use yew::Callback;
 
-use crate::store::{DeckId, Watch, Watchers};
+use crate::store::{DeckId, Shelf, Watch, Watchers};
 
 /// Something to tell about an entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct NoticeStore(Rc<Inner>);
 
 #[derive(Default)]
 struct Inner {
-    notices: RefCell<BTreeMap<DeckId, Notice>>,
+    notices: RefCell<Shelf<DeckId, Notice>>,
     watchers: Watchers,
 }
 

@@ -1,11 +1,6 @@
 //! Everything the page can do with blocks: where a block runs, what is stored, what a person is asked.
 
-use std::{
-    cell::RefCell,
-    collections::{BTreeMap, BTreeSet},
-    fmt,
-    rc::Rc,
-};
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
     api::{Problem, ProblemCode},
@@ -21,7 +16,7 @@ use crate::{
     i18n::tr,
     net::{Relay, rest},
     notice::{Notice, NoticeStore},
-    store::{DeckId, RowStore},
+    store::{DeckId, RowStore, Shelf},
 };
 
 /// A handle to the whole application. Clones are the same.
@@ -34,8 +29,8 @@ struct Parts {
     relay: Relay,
     demo: Demo,
     notices: NoticeStore,
-    gone: RefCell<BTreeMap<DeckId, Gone>>,
-    storing: RefCell<BTreeSet<DeckId>>,
+    gone: RefCell<Shelf<DeckId, Gone>>,
+    storing: RefCell<Shelf<DeckId, ()>>,
 }
 
 /// What this page did to an entry that is not there any more.
@@ -259,7 +254,7 @@ impl Workbench {
     /// Stores an entry if there is something to store: its id and revision in the relay, or `None` and a notice.
     /// While it is being stored a second wish is ignored: two clicks must not make two blocks.
     async fn store(&self, id: DeckId) -> Option<(BlockId, u64)> {
-        if !self.0.storing.borrow_mut().insert(id) {
+        if !self.0.storing.borrow_mut().insert(id, ()) {
             return None;
         }
         let stored = self.store_once(id).await;

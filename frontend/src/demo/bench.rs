@@ -1,13 +1,13 @@
 //! Engine and simulated device, wired to each other without a socket. Time is passed in.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use cipdeck_shared::{
     config::{BlockId, Target},
     engine::{BlockView, CommandError, ConnectError, Engine, Event, Exchange, Instant, LinkId, Millis},
     plan::MessagePlan,
     sim::{Device, SimConfig, SimConnection},
 };
+
+use crate::store::Shelf;
 
 /// What happened to a block.
 #[derive(Debug)]
@@ -23,9 +23,9 @@ pub enum News {
 pub struct Bench {
     engine: Engine,
     device: Device,
-    connections: BTreeMap<LinkId, SimConnection>,
+    connections: Shelf<LinkId, SimConnection>,
     /// Blocks whose message may be sent: it reads, or a person has confirmed it.
-    permitted: BTreeSet<BlockId>,
+    permitted: Shelf<BlockId, ()>,
     clock: fn() -> Instant,
 }
 
@@ -36,8 +36,8 @@ impl Bench {
         Self {
             engine: Engine::new(),
             device: Device::new(config),
-            connections: BTreeMap::new(),
-            permitted: BTreeSet::new(),
+            connections: Shelf::default(),
+            permitted: Shelf::default(),
             clock,
         }
     }
@@ -45,7 +45,7 @@ impl Bench {
     /// Gives a block its message. One that may write is sent only if a person has confirmed it.
     pub fn put(&mut self, block: BlockId, plan: MessagePlan, confirmed: bool) {
         if confirmed || !plan.access().may_write() {
-            self.permitted.insert(block);
+            self.permitted.insert(block, ());
         } else {
             self.permitted.remove(&block);
         }
@@ -114,7 +114,9 @@ impl Bench {
                     connection.handle_input(&mut self.device, &bytes, now);
                 }
             }
-            Event::Wants(wants) => self.engine.permit(&wants, self.permitted.contains(&wants.block), now),
+            Event::Wants(wants) => {
+                self.engine.permit(&wants, self.permitted.get(&wants.block).is_some(), now)
+            }
             Event::Changed { block, view } => return Some(News::Changed(block, view)),
             Event::Finished { block, exchange, .. } => return Some(News::Finished(block, exchange)),
         }

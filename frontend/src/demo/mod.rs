@@ -2,7 +2,7 @@
 
 mod bench;
 
-use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView, LastSuccess},
@@ -15,7 +15,7 @@ use gloo_timers::callback::Timeout;
 pub use self::bench::{Bench, News};
 use crate::{
     browser,
-    store::{DeckId, RowStore},
+    store::{DeckId, RowStore, Shelf},
 };
 
 /// A handle to the browser's engine. Clones are the same engine.
@@ -25,9 +25,9 @@ pub struct Demo(Rc<Inner>);
 struct Inner {
     rows: RowStore,
     bench: RefCell<Bench>,
-    names: RefCell<BTreeMap<DeckId, BlockId>>,
+    names: RefCell<Shelf<DeckId, BlockId>>,
     /// The last success, and after which run.
-    last: RefCell<BTreeMap<BlockId, (u64, LastSuccess)>>,
+    last: RefCell<Shelf<BlockId, (u64, LastSuccess)>>,
     timer: RefCell<Option<Timeout>>,
 }
 
@@ -139,7 +139,11 @@ impl Demo {
     fn name(&self, id: DeckId) -> BlockId {
         let mut names = self.0.names.borrow_mut();
         let next = names.values().map(|name| name.0).max().unwrap_or(0) + 1;
-        *names.entry(id).or_insert(BlockId(next))
+        if let Some(name) = names.get(&id) {
+            return *name;
+        }
+        names.insert(id, BlockId(next));
+        BlockId(next)
     }
 
     fn id(&self, block: BlockId) -> Option<DeckId> {

@@ -1,7 +1,5 @@
 //! What somebody is typing: keeps the text, so that `1x` stays visible, and the configuration as far as it is readable.
 
-use std::collections::BTreeMap;
-
 use cipdeck_shared::{
     api,
     config::{Channel, MsgCipGeneric, NumberError, read_number},
@@ -12,6 +10,7 @@ use super::{
     number::{number, set_number},
     remark::Remark,
 };
+use crate::store::Shelf;
 
 /// A block that is being edited.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +20,7 @@ pub struct Draft {
     /// Everything readable.
     pub config: MsgCipGeneric,
     /// Numbers as typed, where they differ from how we would write them.
-    typed: BTreeMap<Field, String>,
+    typed: Shelf<Field, String>,
     /// What the relay did not accept, until something is changed.
     refused: Vec<api::Finding>,
 }
@@ -42,11 +41,11 @@ pub enum Edit {
 impl Draft {
     /// A draft of a configuration; `revision` if it is stored.
     pub fn new(config: MsgCipGeneric, revision: Option<u64>) -> Self {
-        Self { revision, config, typed: BTreeMap::new(), refused: Vec::new() }
+        Self { revision, config, typed: Shelf::default(), refused: Vec::new() }
     }
 
     /// A draft as it was kept over a reload.
-    pub fn restored(config: MsgCipGeneric, revision: Option<u64>, typed: BTreeMap<Field, String>) -> Self {
+    pub fn restored(config: MsgCipGeneric, revision: Option<u64>, typed: Shelf<Field, String>) -> Self {
         Self { typed, ..Self::new(config, revision) }
     }
 
@@ -81,7 +80,7 @@ impl Draft {
     }
 
     /// The typed texts.
-    pub const fn typed(&self) -> &BTreeMap<Field, String> {
+    pub const fn typed(&self) -> &Shelf<Field, String> {
         &self.typed
     }
 

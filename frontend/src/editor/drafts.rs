@@ -1,13 +1,13 @@
 //! All drafts of this browser. They survive a reload.
 
-use std::{cell::RefCell, collections::BTreeMap, fmt, rc::Rc};
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{config::MsgCipGeneric, plan::Field};
 use serde::{Deserialize, Serialize};
 use yew::Callback;
 
 use super::{draft::Draft, number::number_fields};
-use crate::store::{DeckId, Watch, Watchers};
+use crate::store::{DeckId, Shelf, Watch, Watchers};
 
 /// Where drafts are kept as text, such as the browser's local storage.
 pub type Keep = Rc<dyn Fn(&str)>;
@@ -18,8 +18,8 @@ pub struct DraftStore(Rc<Inner>);
 
 struct Inner {
     keep: Keep,
-    drafts: RefCell<BTreeMap<DeckId, Rc<Draft>>>,
-    watchers: RefCell<BTreeMap<DeckId, Watchers>>,
+    drafts: RefCell<Shelf<DeckId, Rc<Draft>>>,
+    watchers: RefCell<Shelf<DeckId, Watchers>>,
     last_new: RefCell<u32>,
 }
 
@@ -64,7 +64,7 @@ impl DraftStore {
 
     /// Wakes when the draft of this entry changes, comes or goes.
     pub fn watch(&self, id: DeckId, wake: Callback<()>) -> Watch {
-        self.0.watchers.borrow_mut().entry(id).or_default().watch(wake)
+        self.0.watchers.borrow_mut().or_default(id).watch(wake)
     }
 
     fn changed(&self, id: DeckId) {
@@ -88,7 +88,7 @@ impl fmt::Debug for DraftStore {
     }
 }
 
-/// One draft as text.
+/// One draft: a line of JSON.
 #[derive(Serialize, Deserialize)]
 struct Kept {
     id: String,
@@ -97,30 +97,29 @@ struct Kept {
     typed: Vec<(String, String)>,
 }
 
-fn write(drafts: &BTreeMap<DeckId, Rc<Draft>>) -> String {
+fn write(drafts: &Shelf<DeckId, Rc<Draft>>) -> String {
     let keep = |(id, draft): (&DeckId, &Rc<Draft>)| Kept {
         id: id.to_string(),
         revision: draft.revision,
         config: draft.config.clone(),
         typed: draft.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect(),
     };
-    let kept: Vec<_> = drafts.iter().map(keep).collect();
-    serde_json::to_string(&kept).unwrap_or_default()
+    let lines = drafts.iter().filter_map(|draft| serde_json::to_string(&keep(draft)).ok());
+    lines.collect::<Vec<_>>().join("\n")
 }
 
-fn read(text: &str) -> BTreeMap<DeckId, Rc<Draft>> {
-    let kept: Vec<serde_json::Value> = serde_json::from_str(text).unwrap_or_default();
-    let mut drafts = BTreeMap::new();
-    for value in kept {
-        let Ok(kept) = serde_json::from_value::<Kept>(value) else { continue };
+fn read(text: &str) -> Shelf<DeckId, Rc<Draft>> {
+    let mut drafts = Shelf::default();
+    for line in text.lines() {
+        let Ok(kept) = serde_json::from_str::<Kept>(line) else { continue };
         let Ok(id) = kept.id.parse() else { continue };
         drafts.insert(id, Rc::new(Draft::restored(kept.config, kept.revision, typed(&kept.typed))));
     }
     drafts
 }
 
-fn typed(kept: &[(String, String)]) -> BTreeMap<Field, String> {
-    let mut typed = BTreeMap::new();
+fn typed(kept: &[(String, String)]) -> Shelf<Field, String> {
+    let mut typed = Shelf::default();
     for field in number_fields() {
         let name = field.to_string();
         if let Some((_, text)) = kept.iter().find(|(kept, _)| *kept == name) {
@@ -168,7 +167,7 @@ mod tests {
     fn one_unreadable_draft_does_not_cost_the_others() {
         let (store, text) = kept();
         store.put(DeckId::New(1), Draft::new(MsgCipGeneric::product_name("0,0"), None));
-        let broken = text.borrow().replacen('[', r#"[{"id":"new-2","config":1},"#, 1);
+        let broken = format!("{{\"id\":\"new-2\",\"config\":1}}\n{}", text.borrow());
         assert_eq!(DraftStore::new(Some(&broken), Rc::new(|_| ())).ids(), [DeckId::New(1)]);
         assert!(DraftStore::new(Some("not json"), Rc::new(|_| ())).ids().is_empty());
     }

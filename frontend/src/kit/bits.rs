@@ -6,18 +6,10 @@ use yew::prelude::*;
 use super::state::Shape;
 use crate::i18n::tr;
 
-/// Status bits.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct BitsProps {
-    /// Which are set.
-    pub bits: StatusBits,
-}
-
 /// The bits of `Status.StatusBits` in the manual's order.
-#[component]
-pub fn Bits(props: &BitsProps) -> Html {
+pub fn status_bits(bits: StatusBits) -> Html {
     let bit = |(bit, name): &(u16, &'static str)| {
-        let on = props.bits.has(*bit);
+        let on = bits.has(*bit);
         let shape = shape(*bit);
         html! {
             <li
@@ -34,7 +26,7 @@ pub fn Bits(props: &BitsProps) -> Html {
         }
     };
     // The two closing bits are rare: shown when set.
-    let shown = StatusBits::NAMES.iter().filter(|(bit, _)| *bit <= StatusBits::DN || props.bits.has(*bit));
+    let shown = StatusBits::NAMES.iter().filter(|(bit, _)| *bit <= StatusBits::DN || bits.has(*bit));
     html! { <ul class="bits" aria-label={tr!("bit.label")} data-test="status-bits">{ for shown.map(bit) }</ul> }
 }
 

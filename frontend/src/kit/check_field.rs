@@ -1,13 +1,14 @@
 //! A BOOL of the configuration.
 
+use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
-use super::field::{FieldRow, describes};
+use super::field::{describes, field_row};
 use crate::editor::Remark;
 
 /// A check box.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct CheckFieldProps {
+#[derive(Clone, Debug)]
+pub struct CheckField {
     /// Of the input.
     pub id: AttrValue,
     /// Its name in JSON.
@@ -17,34 +18,33 @@ pub struct CheckFieldProps {
     /// TRUE?
     pub checked: bool,
     /// What it does.
-    #[prop_or_default]
-    pub readout: Option<AttrValue>,
+    pub readout: AttrValue,
     /// What is to be said about it.
-    #[prop_or_default]
     pub remarks: Vec<Remark>,
     /// Hears the new value.
     pub on_change: Callback<bool>,
 }
 
-/// A native check box with its findings.
-#[component]
-pub fn CheckField(props: &CheckFieldProps) -> Html {
-    let onchange = use_callback(props.on_change.clone(), |event: Event, on_change| {
-        on_change.emit(event.target_unchecked_into::<web_sys::HtmlInputElement>().checked());
-    });
-    let invalid = props.remarks.iter().any(Remark::is_error).then_some("true");
-    html! {
-        <FieldRow id={props.id.clone()} label={props.label.clone()} remarks={props.remarks.clone()} readout={props.readout.clone()}>
+impl CheckField {
+    /// A native check box with its findings.
+    pub fn draw(self) -> Html {
+        let on_change = self.on_change;
+        let onchange = move |event: Event| {
+            on_change.emit(event.target_unchecked_into::<HtmlInputElement>().checked());
+        };
+        let invalid = self.remarks.iter().any(Remark::is_error).then_some("true");
+        let input = html! {
             <input
-                id={props.id.clone()}
+                id={self.id.clone()}
                 type="checkbox"
                 class="check"
-                name={props.name.clone()}
-                checked={props.checked}
+                name={self.name}
+                checked={self.checked}
                 aria-invalid={invalid}
-                aria-describedby={describes(&props.id, &props.remarks, props.readout.as_ref())}
+                aria-describedby={describes(&self.id, &self.remarks, Some(&self.readout))}
                 {onchange}
             />
-        </FieldRow>
+        };
+        field_row(&self.id, &self.label, &self.remarks, Some(&self.readout), input)
     }
 }

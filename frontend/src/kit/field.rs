@@ -5,23 +5,6 @@ use yew::prelude::*;
 
 use crate::{editor::Remark, i18n::tr};
 
-/// What every field has.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct FieldRowProps {
-    /// Of the input; findings and readout derive theirs from it.
-    pub id: AttrValue,
-    /// Visible name.
-    pub label: AttrValue,
-    /// What is to be said about it.
-    #[prop_or_default]
-    pub remarks: Vec<Remark>,
-    /// What the value means.
-    #[prop_or_default]
-    pub readout: Option<AttrValue>,
-    /// The input.
-    pub children: Html,
-}
-
 /// The ids for `aria-describedby`: only what is there.
 pub fn describes(id: &str, remarks: &[Remark], readout: Option<&AttrValue>) -> Option<AttrValue> {
     let finding = (!remarks.is_empty()).then(|| format!("{id}-finding"));
@@ -30,15 +13,19 @@ pub fn describes(id: &str, remarks: &[Remark], readout: Option<&AttrValue>) -> O
     (!ids.is_empty()).then(|| ids.join(" ").into())
 }
 
-/// Label, input, readout and findings.
-#[component]
-pub fn FieldRow(props: &FieldRowProps) -> Html {
-    let FieldRowProps { id, label, remarks, readout, children } = props;
+/// Label, input, readout and findings. A function: with nothing of its own to remember, a component would only cost.
+pub fn field_row(
+    id: &AttrValue,
+    label: &AttrValue,
+    remarks: &[Remark],
+    readout: Option<&AttrValue>,
+    input: Html,
+) -> Html {
     html! {
         <div class="field">
-            <label class="field-label" for={id}>{ label }</label>
+            <label class="field-label" for={id.clone()}>{ label }</label>
             <div class="field-control">
-                { children.clone() }
+                { input }
                 if let Some(readout) = readout {
                     <span class="readout" id={format!("{id}-readout")}>{ readout }</span>
                 }

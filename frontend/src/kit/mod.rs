@@ -13,14 +13,14 @@ mod text_field;
 mod window_table;
 
 pub use self::{
-    bits::Bits,
+    bits::status_bits,
     check_field::CheckField,
     dialog::Dialog,
-    field::{FieldRow, describes},
+    field::{describes, field_row},
     hex_view::HexView,
     number_field::{NumberField, NumberFieldProps},
     select_field::SelectField,
-    state::{Shape, StateMark},
+    state::{Shape, state_mark},
     switch::Switch,
     text_field::TextField,
     window_table::{WindowTable, WindowTableProps, window},

@@ -3,7 +3,7 @@
 use cipdeck_shared::config::read_number;
 use yew::prelude::*;
 
-use super::field::{FieldRow, describes};
+use super::field::{describes, field_row};
 use crate::editor::{Remark, other_radix};
 
 /// A number field.
@@ -43,21 +43,21 @@ pub fn NumberField(props: &NumberFieldProps) -> Html {
     let parts: Vec<_> = radix.into_iter().chain(props.meaning.as_ref().map(ToString::to_string)).collect();
     let readout = (!parts.is_empty()).then(|| AttrValue::from(parts.join("  ")));
     let invalid = props.remarks.iter().any(Remark::is_error).then_some("true");
-    html! {
-        <FieldRow id={props.id.clone()} label={props.label.clone()} remarks={props.remarks.clone()} readout={readout.clone()}>
-            <input
-                id={props.id.clone()}
-                class="input number"
-                name={props.name.clone()}
-                value={props.text.clone()}
-                placeholder={props.placeholder.clone()}
-                inputmode="text"
-                autocomplete="off"
-                spellcheck="false"
-                aria-invalid={invalid}
-                aria-describedby={describes(&props.id, &props.remarks, readout.as_ref())}
-                {oninput}
-            />
-        </FieldRow>
-    }
+    let described = describes(&props.id, &props.remarks, readout.as_ref());
+    let input = html! {
+        <input
+            id={props.id.clone()}
+            class="input number"
+            name={props.name.clone()}
+            value={props.text.clone()}
+            placeholder={props.placeholder.clone()}
+            inputmode="text"
+            autocomplete="off"
+            spellcheck="false"
+            aria-invalid={invalid}
+            aria-describedby={described}
+            {oninput}
+        />
+    };
+    field_row(&props.id, &props.label, &props.remarks, readout.as_ref(), input)
 }

@@ -1,13 +1,14 @@
 //! One of a few values.
 
+use web_sys::HtmlSelectElement;
 use yew::prelude::*;
 
-use super::field::{FieldRow, describes};
+use super::field::{describes, field_row};
 use crate::editor::Remark;
 
 /// A choice.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct SelectFieldProps {
+#[derive(Clone, Debug)]
+pub struct SelectField {
     /// Of the select.
     pub id: AttrValue,
     /// Its name in JSON.
@@ -17,40 +18,41 @@ pub struct SelectFieldProps {
     /// The chosen value.
     pub value: AttrValue,
     /// Value and words of each choice. A value that is none of them is shown as it is.
-    pub choices: Vec<(AttrValue, AttrValue)>,
+    pub choices: [(&'static str, AttrValue); 2],
     /// What is to be said about it.
-    #[prop_or_default]
     pub remarks: Vec<Remark>,
     /// Hears the chosen value.
     pub on_choice: Callback<String>,
 }
 
-/// A native select.
-#[component]
-pub fn SelectField(props: &SelectFieldProps) -> Html {
-    let onchange = use_callback(props.on_choice.clone(), |event: Event, on_choice| {
-        on_choice.emit(event.target_unchecked_into::<web_sys::HtmlSelectElement>().value());
-    });
-    let invalid = props.remarks.iter().any(Remark::is_error).then_some("true");
-    let is_known = props.choices.iter().any(|(value, _)| *value == props.value);
-    let option = |value: &AttrValue, words: &AttrValue| {
-        html! { <option value={value.clone()} selected={*value == props.value}>{ words }</option> }
-    };
-    html! {
-        <FieldRow id={props.id.clone()} label={props.label.clone()} remarks={props.remarks.clone()}>
+impl SelectField {
+    /// A native select.
+    pub fn draw(self) -> Html {
+        let on_choice = self.on_choice;
+        let onchange = move |event: Event| {
+            on_choice.emit(event.target_unchecked_into::<HtmlSelectElement>().value());
+        };
+        let invalid = self.remarks.iter().any(Remark::is_error).then_some("true");
+        let is_known = self.choices.iter().any(|(value, _)| *value == self.value);
+        let option = |value: AttrValue, words: &AttrValue| {
+            let selected = value == self.value;
+            html! { <option {value} {selected}>{ words }</option> }
+        };
+        let input = html! {
             <select
-                id={props.id.clone()}
+                id={self.id.clone()}
                 class="input select"
-                name={props.name.clone()}
+                name={self.name}
                 aria-invalid={invalid}
-                aria-describedby={describes(&props.id, &props.remarks, None)}
+                aria-describedby={describes(&self.id, &self.remarks, None)}
                 {onchange}
             >
-                { for props.choices.iter().map(|(value, words)| option(value, words)) }
+                { for self.choices.iter().map(|(value, words)| option((*value).into(), words)) }
                 if !is_known {
-                    { option(&props.value, &props.value) }
+                    { option(self.value.clone(), &self.value) }
                 }
             </select>
-        </FieldRow>
+        };
+        field_row(&self.id, &self.label, &self.remarks, None, input)
     }
 }

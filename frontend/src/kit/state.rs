@@ -86,25 +86,14 @@ fn phase_word(phase: Phase) -> AttrValue {
     }
 }
 
-/// A phase.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct StateMarkProps {
-    /// Which.
-    pub phase: Phase,
-    /// The word is for screen readers only.
-    #[prop_or_default]
-    pub short: bool,
-}
-
-/// Word, shape and colour of a phase.
-#[component]
-pub fn StateMark(props: &StateMarkProps) -> Html {
-    let shape = Shape::of(props.phase);
-    let word = phase_word(props.phase);
+/// Word, shape and colour of a phase; `short` leaves the word to screen readers.
+pub fn state_mark(phase: Phase, short: bool) -> Html {
+    let shape = Shape::of(phase);
+    let word = phase_word(phase);
     html! {
-        <span class={classes!("state", shape.class())} title={props.short.then(|| word.clone())}>
+        <span class={classes!("state", shape.class())} title={short.then(|| word.clone())}>
             { shape.draw() }
-            <span class={if props.short { "unseen" } else { "state-word" }}>{ word }</span>
+            <span class={if short { "unseen" } else { "state-word" }}>{ word }</span>
         </span>
     }
 }

@@ -1,13 +1,14 @@
 //! A text, on one line or on several.
 
+use web_sys::{HtmlInputElement, HtmlTextAreaElement};
 use yew::prelude::*;
 
-use super::field::{FieldRow, describes};
+use super::field::{describes, field_row};
 use crate::editor::Remark;
 
 /// A text field.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct TextFieldProps {
+#[derive(Clone, Debug)]
+pub struct TextField {
     /// Of the input.
     pub id: AttrValue,
     /// Its name in JSON.
@@ -17,51 +18,47 @@ pub struct TextFieldProps {
     /// As typed.
     pub text: AttrValue,
     /// Several lines.
-    #[prop_or_default]
     pub multiline: bool,
     /// What the text means.
-    #[prop_or_default]
     pub readout: Option<AttrValue>,
     /// Shown while nothing is typed.
-    #[prop_or_default]
-    pub placeholder: Option<AttrValue>,
+    pub placeholder: &'static str,
     /// What is to be said about it.
-    #[prop_or_default]
     pub remarks: Vec<Remark>,
     /// Hears every change of the text.
     pub on_text: Callback<String>,
 }
 
-/// A text input with its findings.
-#[component]
-pub fn TextField(props: &TextFieldProps) -> Html {
-    let on_text = props.on_text.clone();
-    let oninput = use_callback((on_text, props.multiline), |event: InputEvent, (on_text, multiline)| {
-        on_text.emit(if *multiline {
-            event.target_unchecked_into::<web_sys::HtmlTextAreaElement>().value()
-        } else {
-            event.target_unchecked_into::<web_sys::HtmlInputElement>().value()
-        });
-    });
-    let invalid = props.remarks.iter().any(Remark::is_error).then_some("true");
-    let described = describes(&props.id, &props.remarks, props.readout.as_ref());
-    let (id, name, value) = (props.id.clone(), props.name.clone(), props.text.clone());
-    let placeholder = props.placeholder.clone();
-    html! {
-        <FieldRow id={props.id.clone()} label={props.label.clone()} remarks={props.remarks.clone()} readout={props.readout.clone()}>
-            if props.multiline {
+impl TextField {
+    /// A text input with its findings.
+    pub fn draw(self) -> Html {
+        let invalid = self.remarks.iter().any(Remark::is_error).then_some("true");
+        let described = describes(&self.id, &self.remarks, self.readout.as_ref());
+        let (id, name, value) = (self.id.clone(), self.name, self.text);
+        let (on_text, placeholder) = (self.on_text, self.placeholder);
+        let input = if self.multiline {
+            let oninput = move |event: InputEvent| {
+                on_text.emit(event.target_unchecked_into::<HtmlTextAreaElement>().value());
+            };
+            html! {
                 <textarea
                     {id} {name} {value} {placeholder} {oninput}
                     class="input bytes-input" rows="2" spellcheck="false"
                     aria-invalid={invalid} aria-describedby={described}
                 />
-            } else {
+            }
+        } else {
+            let oninput = move |event: InputEvent| {
+                on_text.emit(event.target_unchecked_into::<HtmlInputElement>().value());
+            };
+            html! {
                 <input
                     {id} {name} {value} {placeholder} {oninput}
                     class="input text" autocomplete="off" spellcheck="false"
                     aria-invalid={invalid} aria-describedby={described}
                 />
             }
-        </FieldRow>
+        };
+        field_row(&self.id, &self.label, &self.remarks, self.readout.as_ref(), input)
     }
 }

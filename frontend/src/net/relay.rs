@@ -2,7 +2,6 @@
 
 use std::{
     cell::{Cell, RefCell},
-    collections::BTreeMap,
     fmt,
     rc::Rc,
 };
@@ -23,7 +22,7 @@ use super::{
 use crate::{
     browser,
     i18n::tr,
-    store::{RowStore, Watch, Watchers},
+    store::{RowStore, Shelf, Watch, Watchers},
 };
 
 /// What the page says about the connection.
@@ -66,7 +65,7 @@ struct Inner {
     socket: RefCell<Option<Socket>>,
     wait: RefCell<Option<Timeout>>,
     probe: RefCell<Option<Interval>>,
-    pending: RefCell<BTreeMap<String, Callback<Problem>>>,
+    pending: RefCell<Shelf<String, Callback<Problem>>>,
     last_command: Cell<u64>,
     link: RefCell<Link>,
     has_snapshot: Cell<bool>,
@@ -191,7 +190,7 @@ impl Relay {
         }
         *self.0.sequence.borrow_mut() = Sequence::default();
         let pending = std::mem::take(&mut *self.0.pending.borrow_mut());
-        for refused in pending.into_values() {
+        for refused in pending.values() {
             refused.emit(unreachable(tr!("problem.connection_lost").to_string()));
         }
         self.input(Input::Closed);

@@ -6,8 +6,7 @@ use yew_router::prelude::Link;
 use crate::{i18n::tr, route::Route};
 
 /// Says so, and shows the way back.
-#[component]
-pub fn NotFoundPage() -> Html {
+pub fn not_found() -> Html {
     html! {
         <section class="prose">
             <h1>{ tr!("not_found.title") }</h1>

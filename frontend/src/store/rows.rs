@@ -3,12 +3,7 @@
 //! Messages from the relay change rows as often as they like; the page hears of it once per animation frame, and
 //! only those components hear of it whose row has changed.
 
-use std::{
-    cell::RefCell,
-    collections::{BTreeMap, BTreeSet},
-    fmt,
-    rc::Rc,
-};
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView},
@@ -19,6 +14,7 @@ use yew::Callback;
 
 use super::{
     deck_id::DeckId,
+    shelf::Shelf,
     trace::Trace,
     watch::{Watch, Watchers},
 };
@@ -56,10 +52,10 @@ struct Inner {
 
 #[derive(Default)]
 struct State {
-    rows: BTreeMap<DeckId, Rc<Row>>,
-    watchers: BTreeMap<DeckId, Watchers>,
+    rows: Shelf<DeckId, Rc<Row>>,
+    watchers: Shelf<DeckId, Watchers>,
     ids: Rc<[DeckId]>,
-    dirty: BTreeSet<DeckId>,
+    dirty: Shelf<DeckId, ()>,
     ids_changed: bool,
     frame_asked: bool,
 }
@@ -87,7 +83,7 @@ impl RowStore {
 
     /// Wakes after frames in which this row has changed.
     pub fn watch(&self, id: DeckId, wake: Callback<()>) -> Watch {
-        self.0.state.borrow_mut().watchers.entry(id).or_default().watch(wake)
+        self.0.state.borrow_mut().watchers.or_default(id).watch(wake)
     }
 
     /// Wakes after frames in which entries came or went.
@@ -152,7 +148,7 @@ impl RowStore {
     pub fn remove(&self, id: DeckId) {
         let mut state = self.0.state.borrow_mut();
         if state.rows.remove(&id).is_some() {
-            state.dirty.insert(id);
+            state.dirty.insert(id, ());
             state.members_changed();
             drop(state);
             self.ask();
@@ -163,7 +159,7 @@ impl RowStore {
         let mut state = self.0.state.borrow_mut();
         let Some(row) = state.rows.get_mut(&id) else { return };
         change(Rc::make_mut(row));
-        state.dirty.insert(id);
+        state.dirty.insert(id, ());
         drop(state);
         self.ask();
     }
@@ -181,7 +177,7 @@ impl RowStore {
             );
             state.members_changed();
         }
-        state.dirty.insert(id);
+        state.dirty.insert(id, ());
         drop(state);
         self.ask();
     }
@@ -203,7 +199,7 @@ impl RowStore {
         let dirty = std::mem::take(&mut state.dirty);
         let ids_changed = std::mem::take(&mut state.ids_changed);
         state.watchers.retain(|_, watchers| !watchers.is_empty());
-        let woken: Vec<_> = dirty.iter().filter_map(|id| state.watchers.get(id).cloned()).collect();
+        let woken: Vec<_> = dirty.keys().filter_map(|id| state.watchers.get(id).cloned()).collect();
         drop(state);
         for watchers in woken {
             watchers.wake();

@@ -2,12 +2,13 @@
 
 use std::{
     cell::RefCell,
-    collections::BTreeMap,
     fmt,
     rc::{Rc, Weak},
 };
 
 use yew::Callback;
+
+use super::shelf::Shelf;
 
 /// The watchers of one thing.
 #[derive(Clone, Default)]
@@ -16,7 +17,7 @@ pub struct Watchers(Rc<RefCell<List>>);
 #[derive(Default)]
 struct List {
     next: u64,
-    wakes: BTreeMap<u64, Callback<()>>,
+    wakes: Shelf<u64, Callback<()>>,
 }
 
 impl Watchers {

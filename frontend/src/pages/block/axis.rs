@@ -1,26 +1,14 @@
 //! EN, EW, ST, ER and DN over time, as the manual's timing diagrams draw them: one column per edge, not to scale.
 
-use std::{fmt::Write, rc::Rc};
+use std::fmt::Write;
 
 use cipdeck_shared::engine::StatusBits;
 use yew::prelude::*;
 
-use crate::{
-    i18n::tr,
-    store::{Edge, Trace},
-};
+use crate::{i18n::tr, store::Edge};
 
-#[derive(Clone, PartialEq, Properties)]
-pub(super) struct AxisProps {
-    pub(super) trace: Rc<Trace>,
-    /// The block runs again and again.
-    pub(super) repeats: bool,
-}
-
-/// The diagram of the newest run; its text alternative names every edge.
-#[component]
-pub(super) fn Axis(props: &AxisProps) -> Html {
-    let edges = if props.repeats { props.trace.steady() } else { props.trace.newest() };
+/// The diagram of a run; its text alternative names every edge.
+pub(super) fn axis(edges: &[Edge]) -> Html {
     if edges.is_empty() {
         return html! { <p class="axis-empty quiet">{ tr!("axis.empty") }</p> };
     }

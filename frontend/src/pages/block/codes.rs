@@ -41,7 +41,7 @@ pub(crate) fn error_words(status: &CipStatus) -> String {
 
 /// A cause as JSON names it: the key of its text.
 pub(super) fn cause_key(kind: &CauseKind) -> String {
-    serde_json::to_value(kind).ok().and_then(|kind| kind.as_str().map(str::to_owned)).unwrap_or_default()
+    serde_json::to_string(kind).unwrap_or_default().trim_matches('"').to_owned()
 }
 
 #[cfg(test)]

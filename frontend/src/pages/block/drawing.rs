@@ -1,18 +1,10 @@
 //! The function block as an FBD editor draws it, with live values on its pins.
 
-use std::rc::Rc;
-
 use cipdeck_shared::{api::BlockStatus, config::read_hex, engine::StatusBits};
 use yew::prelude::*;
 
 use super::subject::Subject;
 use crate::i18n::tr;
-
-#[derive(Clone, PartialEq, Properties)]
-pub(super) struct DrawingProps {
-    pub(super) subject: Rc<Subject>,
-    pub(super) status: Rc<BlockStatus>,
-}
 
 /// One pin: its name, the value on its wire, and whether the wire is live (a BOOL that is TRUE).
 struct Pin {
@@ -32,9 +24,8 @@ impl Pin {
 }
 
 /// The drawing; its text alternative is the list of pins.
-#[component]
-pub(super) fn Drawing(props: &DrawingProps) -> Html {
-    let (left, right) = (inputs(&props.subject, &props.status), outputs(&props.status));
+pub(super) fn drawing(subject: &Subject, status: &BlockStatus) -> Html {
+    let (left, right) = (inputs(subject, status), outputs(status));
     let rows = left.len().max(right.len());
     let bottom = TOP + ROW * index(rows);
     html! {

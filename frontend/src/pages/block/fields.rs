@@ -1,7 +1,5 @@
 //! Fields of the form, bound to the members of a configuration.
 
-use std::rc::Rc;
-
 use cipdeck_shared::{plan::Field, table, wire::ServiceCode};
 use yew::prelude::*;
 
@@ -24,55 +22,34 @@ pub(super) fn member_name(field: &Field) -> AttrValue {
     name.rsplit('.').next().unwrap_or(&name).to_owned().into()
 }
 
-/// One member.
-#[derive(Clone, PartialEq, Properties)]
-pub(super) struct MemberProps {
-    pub(super) subject: Rc<Subject>,
-    pub(super) edit: Callback<Edit>,
-    pub(super) field: Field,
-}
-
 /// A number member.
-#[component]
-pub(super) fn NumberMember(props: &MemberProps) -> Html {
-    let MemberProps { subject, edit, field } = props;
-    let on_text = use_callback((edit.clone(), field.clone()), |text: String, (edit, field)| {
-        edit.emit(Edit::Number(field.clone(), text));
-    });
-    let placeholder = (*field == Field::ReqLength).then(|| tr!("field.all"));
+pub(super) fn number_member(subject: &Subject, edit: &Callback<Edit>, field: Field) -> Html {
     html! {
         <NumberField
-            id={field_id(field)}
+            id={field_id(&field)}
             name={field.to_string()}
-            label={member_name(field)}
-            text={subject.draft.text(field)}
-            meaning={meaning(subject, field)}
-            {placeholder}
-            remarks={subject.remarks_of(field)}
-            {on_text}
+            label={member_name(&field)}
+            text={subject.draft.text(&field)}
+            meaning={meaning(subject, &field)}
+            placeholder={(field == Field::ReqLength).then(|| tr!("field.all"))}
+            remarks={subject.remarks_of(&field)}
+            on_text={edit.reform(move |text| Edit::Number(field.clone(), text))}
         />
     }
 }
 
 /// A BOOL member.
-#[component]
-pub(super) fn FlagMember(props: &MemberProps) -> Html {
-    let MemberProps { subject, edit, field } = props;
-    let on_change = use_callback((edit.clone(), field.clone()), |on: bool, (edit, field)| {
-        edit.emit(Edit::Flag(field.clone(), on));
-    });
+pub(super) fn flag_member(subject: &Subject, edit: &Callback<Edit>, field: Field) -> Html {
     let config = &subject.draft.config;
     let (checked, readout) = match field {
         Field::Resume => (config.resume, tr!("field.resume")),
         Field::ConnClose => (config.target_cfg.conn_close, tr!("field.conn_close")),
         _ => (config.ctrl_cfg.cancel, tr!("field.cancel")),
     };
-    html! {
-        <CheckField
-            id={field_id(field)} name={field.to_string()} label={member_name(field)}
-            {checked} {readout} remarks={subject.remarks_of(field)} {on_change}
-        />
-    }
+    let (id, name, label) = (field_id(&field), field.to_string().into(), member_name(&field));
+    let remarks = subject.remarks_of(&field);
+    let on_change = edit.reform(move |on| Edit::Flag(field.clone(), on));
+    CheckField { id, name, label, checked, readout, remarks, on_change }.draw()
 }
 
 /// What a number means, beside its two radices.

@@ -9,7 +9,7 @@ use cipdeck_shared::{
 use yew::prelude::*;
 
 use super::{
-    fields::{FlagMember, NumberMember, field_id, member_name},
+    fields::{field_id, flag_member, member_name, number_member},
     subject::{Subject, target_words},
 };
 use crate::{
@@ -29,85 +29,63 @@ pub(super) struct FormProps {
 pub(super) fn Form(props: &FormProps) -> Html {
     let FormProps { subject, edit } = props;
     let config = &subject.draft.config;
-    let number =
-        |field: Field| html! { <NumberMember subject={subject.clone()} edit={edit.clone()} {field} /> };
-    let flag = |field: Field| html! { <FlagMember subject={subject.clone()} edit={edit.clone()} {field} /> };
-    let text = |field: Field,
-                value: &str,
-                readout: Option<AttrValue>,
-                placeholder: &'static str,
-                multiline: bool| {
-        let change = edit.reform({
-            let field = field.clone();
-            move |text| Edit::Text(field.clone(), text)
-        });
-        html! {
-            <TextField
-                id={field_id(&field)} name={field.to_string()} label={member_name(&field)} text={value.to_owned()}
-                {readout} {placeholder} {multiline} remarks={subject.remarks_of(&field)} on_text={change}
-            />
-        }
+    let number = |field| number_member(subject, edit, field);
+    let flag = |field| flag_member(subject, edit, field);
+    let text = |field: Field, text: &str, readout, placeholder, multiline| {
+        let (id, name, label) = (field_id(&field), field.to_string().into(), member_name(&field));
+        let (text, remarks) = (text.to_owned().into(), subject.remarks_of(&field));
+        let on_text = edit.reform(move |text| Edit::Text(field.clone(), text));
+        TextField { id, name, label, text, multiline, readout, placeholder, remarks, on_text }.draw()
     };
     let data = read_hex(&config.req_data).ok().map(|data| tr!("field.byte_count", count = data.len()));
-    let members = config.app_cfg.member_cnt.clamp(0, 3);
     html! {
         <form class="form" onsubmit={|event: SubmitEvent| event.prevent_default()} data-test="form">
-            <Section title="TargetCfg" open=true brief={None::<AttrValue>}>
-                { text(Field::Path, &config.target_cfg.path, target_words(&config.target_cfg.path), "4,192.168.1.100", false) }
-            </Section>
-            <Section title="AppCfg" open=true brief={None::<AttrValue>}>
+            { section("TargetCfg".into(), true, None, text(
+                Field::Path, &config.target_cfg.path, target_words(&config.target_cfg.path), "4,192.168.1.100", false,
+            )) }
+            { section("AppCfg".into(), true, None, html! { <>
                 { number(Field::Service) }
                 { number(Field::Class) }
                 { number(Field::Instance) }
                 { number(Field::Attribute) }
                 { number(Field::MemberCnt) }
-                { for (0..3).filter(|index| i64::try_from(*index).is_ok_and(|index| index < members) || has_remarks(subject, &[Field::MemberId(*index)]))
-                    .map(|index| number(Field::MemberId(index))) }
+                { for (0..3).filter(|index| is_shown(subject, *index)).map(|index| number(Field::MemberId(index))) }
                 { whole_remarks(subject, &Field::MemberIds) }
-            </Section>
-            <Section title="ReqData / ResData" open=true brief={None::<AttrValue>}>
+            </> }) }
+            { section("ReqData / ResData".into(), true, None, html! { <>
                 { text(Field::ReqData, &config.req_data, data, "0A 0B 0C", true) }
                 { number(Field::ReqLength) }
                 { number(Field::ResDataSize) }
-            </Section>
-            <Section title="CtrlCfg" open={has_remarks(subject, &CTRL)} brief={trigger_words(config.ctrl_cfg.trigger_type)}>
+            </> }) }
+            { section("CtrlCfg".into(), has_remarks(subject, &CTRL), Some(trigger_words(config.ctrl_cfg.trigger_type)), html! { <>
                 { number(Field::TriggerType) }
                 { flag(Field::Cancel) }
                 { number(Field::StrMode) }
                 { channel(subject, edit) }
                 { flag(Field::Resume) }
-            </Section>
-            <Section title={tr!("form.connection")} open={has_remarks(subject, &CONNECTION)} brief={connection_words(subject)}>
+            </> }) }
+            { section(tr!("form.connection"), has_remarks(subject, &CONNECTION), Some(connection_words(subject)), html! { <>
                 { mode(subject, edit) }
                 { number(Field::UcmmTimeout) }
                 { number(Field::ConnMsgTimeout) }
                 { flag(Field::ConnClose) }
-            </Section>
+            </> }) }
             { unknown(subject) }
         </form>
     }
 }
 
-#[derive(Clone, PartialEq, Properties)]
-struct SectionProps {
-    title: AttrValue,
-    open: bool,
-    /// What is in it, while it is closed.
-    brief: Option<AttrValue>,
-    children: Html,
-}
-
-#[component]
-fn Section(props: &SectionProps) -> Html {
+/// `brief` says what is in it while it is closed.
+fn section(title: AttrValue, open: bool, brief: Option<AttrValue>, body: Html) -> Html {
     html! {
-        <details class="section" open={props.open}>
+        <details class="section" {open}>
             <summary>
-                <span class="section-title">{ &props.title }</span>
-                if let Some(brief) = &props.brief {
+                <span class="section-title">{ title }</span>
+                if let Some(brief) = brief {
                     <span class="section-brief">{ brief }</span>
                 }
             </summary>
-            <div class="section-body">{ props.children.clone() }</div>
+            <div class="section-body">{ body }</div>
         </details>
     }
 }
@@ -115,6 +93,12 @@ fn Section(props: &SectionProps) -> Html {
 const CTRL: [Field; 4] = [Field::TriggerType, Field::Cancel, Field::StrMode, Field::Resume];
 const CONNECTION: [Field; 4] =
     [Field::CipConnMode, Field::UcmmTimeout, Field::ConnMsgTimeout, Field::ConnClose];
+
+/// Members that are sent, and those with something to say about them.
+fn is_shown(subject: &Subject, member: usize) -> bool {
+    let sent = usize::try_from(subject.draft.config.app_cfg.member_cnt).unwrap_or(0);
+    member < sent || has_remarks(subject, &[Field::MemberId(member)])
+}
 
 fn has_remarks(subject: &Subject, fields: &[Field]) -> bool {
     fields.iter().any(|field| !subject.remarks_of(field).is_empty())
@@ -142,26 +126,32 @@ fn channel(subject: &Subject, edit: &Callback<Edit>) -> Html {
         Channel::Controller => "controller",
         Channel::Monitor => "monitor",
     };
-    let choices = vec![
-        ("controller".into(), tr!("form.channel_controller")),
-        ("monitor".into(), tr!("form.channel_monitor")),
-    ];
-    let on_choice = edit.reform(|value: String| {
-        Edit::Channel(if value == "monitor" { Channel::Monitor } else { Channel::Controller })
-    });
-    html! { <SelectField id="field-Channel" name="Channel" label="Channel" {value} {choices} {on_choice} /> }
+    SelectField {
+        id: "field-Channel".into(),
+        name: "Channel".into(),
+        label: "Channel".into(),
+        value: value.into(),
+        choices: [("controller", tr!("form.channel_controller")), ("monitor", tr!("form.channel_monitor"))],
+        remarks: Vec::new(),
+        on_choice: edit.reform(|value: String| {
+            Edit::Channel(if value == "monitor" { Channel::Monitor } else { Channel::Controller })
+        }),
+    }
+    .draw()
 }
 
 fn mode(subject: &Subject, edit: &Callback<Edit>) -> Html {
     let field = Field::CipConnMode;
-    let choices = vec![("0".into(), tr!("form.mode_0")), ("1".into(), tr!("form.mode_1"))];
-    let on_choice = edit.reform(|value| Edit::Number(Field::CipConnMode, value));
-    html! {
-        <SelectField
-            id={field_id(&field)} name={field.to_string()} label={member_name(&field)} value={subject.draft.text(&field)}
-            {choices} remarks={subject.remarks_of(&field)} {on_choice}
-        />
+    SelectField {
+        id: field_id(&field),
+        name: field.to_string().into(),
+        label: member_name(&field),
+        value: subject.draft.text(&field).into(),
+        choices: [("0", tr!("form.mode_0")), ("1", tr!("form.mode_1"))],
+        remarks: subject.remarks_of(&field),
+        on_choice: edit.reform(|value| Edit::Number(Field::CipConnMode, value)),
     }
+    .draw()
 }
 
 /// Findings about something that has no input of its own.

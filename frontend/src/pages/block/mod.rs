@@ -19,13 +19,13 @@ use std::rc::Rc;
 use yew::prelude::*;
 
 use self::{
-    axis::Axis, drawing::Drawing, exchange::Exchange, form::Form, head::Head, notice::NoticeBar,
+    axis::axis, drawing::drawing, exchange::Exchange, form::Form, head::Head, notice::NoticeBar,
     outcome::Outcome, subject::Subject,
 };
 use crate::{
     hooks::{use_draft, use_link, use_row, use_workbench},
     i18n::tr,
-    kit::{Bits, StateMark},
+    kit::{state_mark, status_bits},
     pages::connection::StaleNote,
     store::DeckId,
 };
@@ -57,10 +57,10 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
         let bench = bench.clone();
         move |_| Subject::of(&bench, id)
     });
+    let edit = use_callback((bench, id), |edit, (bench, id)| bench.edit(*id, edit));
     let Some((row, subject)) = row.zip((*subject).clone()) else { return html! {} };
     let subject = Rc::new(subject);
     let repeats = row.status.input && row.config.ctrl_cfg.trigger_type != 0;
-    let edit = Callback::from(move |edit| bench.edit(id, edit));
     html! {
         <article class="block" aria-label={subject.draft.config.name.clone()}>
             <h1 class="unseen">{ &subject.draft.config.name }</h1>
@@ -69,15 +69,15 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
             <Form subject={subject.clone()} {edit} />
             <section class="live">
                 <div class="live-state">
-                    <StateMark phase={row.status.phase} />
-                    <Bits bits={row.status.status.status_bits} />
+                    { state_mark(row.status.phase, false) }
+                    { status_bits(row.status.status.status_bits) }
                 </div>
                 if row.status.position > 0 {
                     <p class="hint" data-test="position">{ tr!("run.position", position = row.status.position) }</p>
                 }
                 <StaleNote stored={id.stored().is_some()} />
-                <Drawing subject={subject.clone()} status={row.status.clone()} />
-                <Axis trace={row.trace.clone()} {repeats} />
+                { drawing(&subject, &row.status) }
+                { axis(if repeats { row.trace.steady() } else { row.trace.newest() }) }
                 <Outcome row={row.clone()} />
             </section>
             <section class="bytes" aria-label={tr!("bytes.label")}>

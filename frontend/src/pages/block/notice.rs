@@ -44,10 +44,7 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
 
 /// The code as JSON has it.
 fn code(problem: &Problem) -> String {
-    serde_json::to_value(&problem.code)
-        .ok()
-        .and_then(|code| code.as_str().map(str::to_owned))
-        .unwrap_or_default()
+    serde_json::to_string(&problem.code).unwrap_or_default().trim_matches('"').to_owned()
 }
 
 fn words(problem: &Problem) -> String {
@@ -101,7 +98,11 @@ fn Conflict(props: &ConflictProps) -> Html {
 
 /// Members that differ, with both values as JSON has them.
 fn differences(mine: &MsgCipGeneric, theirs: &MsgCipGeneric) -> Vec<(String, String, String)> {
-    let value = |config| serde_json::to_value(config).unwrap_or_default();
+    // Through text: a second way to write JSON would cost more of the page than this costs of the time.
+    let value = |config| {
+        let text = serde_json::to_string(config).unwrap_or_default();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default()
+    };
     let mut found = Vec::new();
     compare("", &value(mine), &value(theirs), &mut found);
     found

@@ -11,7 +11,7 @@ use cipdeck_shared::{
 };
 use yew::prelude::*;
 
-use super::{axis::duration, trouble::Trouble};
+use super::{axis::duration, trouble::trouble};
 use crate::{browser, hooks::use_second, i18n::tr, store::Row};
 
 #[derive(Clone, PartialEq, Properties)]
@@ -42,7 +42,7 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
                 </span>
             </h2>
             if status.phase == Phase::Failed {
-                <Trouble status={status.clone()} />
+                { trouble(status) }
             }
             if let Some(last) = &status.last {
                 <div class={classes!("good", (!status.q).then_some("stale"))}>

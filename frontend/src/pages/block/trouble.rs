@@ -1,7 +1,5 @@
 //! An error in words: what happened, what the numbers mean and how well that is known, what to try.
 
-use std::rc::Rc;
-
 use cipdeck_shared::{
     api::BlockStatus,
     engine::Cause,
@@ -12,16 +10,10 @@ use yew::prelude::*;
 use super::codes::{cause_key, entries};
 use crate::i18n::{tr, try_text};
 
-#[derive(Clone, PartialEq, Properties)]
-pub(super) struct TroubleProps {
-    pub(super) status: Rc<BlockStatus>,
-}
-
 /// Everything known about a failed run.
-#[component]
-pub(super) fn Trouble(props: &TroubleProps) -> Html {
-    let codes = &props.status.status;
-    let cause = props.status.cause.as_ref();
+pub(super) fn trouble(status: &BlockStatus) -> Html {
+    let codes = &status.status;
+    let cause = status.cause.as_ref();
     let entries = entries(codes, cause.and_then(|cause| cause.status));
     let key = cause.map(|cause| cause_key(&cause.what)).unwrap_or_default();
     // A cause of a newer relay has no text here: its own word is better than nothing.
@@ -31,7 +23,7 @@ pub(super) fn Trouble(props: &TroubleProps) -> Html {
     html! {
         <div class="trouble" data-test="error">
             <p class="trouble-title">
-                <span class="trouble-codes mono" data-test="error-codes">{ numbers(&props.status) }</span>
+                <span class="trouble-codes mono" data-test="error-codes">{ numbers(status) }</span>
                 <b data-test="error-name">{ entries.first().map_or("", |entry| entry.name) }</b>
             </p>
             <p>{ what }{ " " }{ detail(cause) }</p>

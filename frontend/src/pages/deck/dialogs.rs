@@ -21,18 +21,9 @@ pub(super) enum Asked {
     Delete(DeckId),
 }
 
-#[derive(Clone, PartialEq, Properties)]
-pub(super) struct DialogsProps {
-    pub(super) asked: Asked,
-    /// Closes the dialog; with an entry that was added.
-    pub(super) on_answered: Callback<Option<DeckId>>,
-}
-
-/// The dialog of a question.
-#[component]
-pub(super) fn Dialogs(props: &DialogsProps) -> Html {
-    let on_answered = props.on_answered.clone();
-    match props.asked {
+/// The dialog of a question. `on_answered` closes it, with an entry if one was added.
+pub(super) fn dialog(asked: Asked, on_answered: Callback<Option<DeckId>>) -> Html {
+    match asked {
         Asked::Rename(id) => html! { <Rename {id} {on_answered} /> },
         Asked::Copy(id) => html! { <Copy {id} {on_answered} /> },
         Asked::Paste => html! { <Paste {on_answered} /> },

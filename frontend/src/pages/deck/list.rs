@@ -7,11 +7,11 @@ use web_sys::HtmlInputElement;
 use yew::prelude::*;
 use yew_router::prelude::*;
 
-use super::dialogs::{Asked, Dialogs};
+use super::dialogs::{Asked, dialog};
 use crate::{
     hooks::{use_draft, use_row, use_workbench},
     i18n::tr,
-    kit::StateMark,
+    kit::state_mark,
     route::Route,
     store::DeckId,
 };
@@ -88,7 +88,7 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
                 }) }
             </ul>
             if let Some(asked) = *asked {
-                <Dialogs {asked} {on_answered} />
+                { dialog(asked, on_answered) }
             }
         </aside>
     }
@@ -116,7 +116,7 @@ fn Entry(props: &EntryProps) -> Html {
     html! {
         <li class={classes!("entry", props.chosen.then_some("chosen"))} data-test="entry">
             <Link<Route> to={Route::Block { id: props.id.to_string() }}>
-                <StateMark phase={row.status.phase} short=true />
+                { state_mark(row.status.phase, true) }
                 <span class="entry-name">{ &config.name }</span>
                 if bench.is_unsaved(props.id) {
                     <span class="entry-draft">{ tr!("list.unsaved") }</span>

@@ -6,7 +6,7 @@ use yew_router::prelude::Link;
 use crate::{
     browser,
     hooks::{use_row, use_second},
-    kit::StateMark,
+    kit::state_mark,
     pages::block::{age_words, decode, duration, error_words},
     route::Route,
     store::{DeckId, Row},
@@ -31,7 +31,7 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
     let age = status.last.as_ref().and_then(|last| browser::age_s(&last.at)).map(age_words);
     html! {
         <tr aria-rowindex={props.index.to_string()} data-test="monitor-row" data-block={props.id.to_string()}>
-            <td class="col-state"><StateMark phase={status.phase} /></td>
+            <td class="col-state">{ state_mark(status.phase, false) }</td>
             <th scope="row" class="col-name">
                 <Link<Route> to={Route::Block { id: props.id.to_string() }}>{ &row.config.name }</Link<Route>>
             </th>
