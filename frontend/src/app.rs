@@ -1,7 +1,6 @@
 //! The frame around every page: navigation, connection, theme.
 
 use yew::prelude::*;
-use yew_router::prelude::*;
 
 use crate::{
     browser,
@@ -13,8 +12,8 @@ use crate::{
     pages::{
         connection::Connection, deck::DeckPage, help::HelpPage, monitor::MonitorPage, not_found::not_found,
     },
-    route::Route,
-    store::{DeckId, RowStore},
+    route::{self, Route, link, use_route},
+    store::RowStore,
     theme::ThemeToggle,
     workbench::Workbench,
 };
@@ -29,9 +28,7 @@ pub fn App() -> Html {
     html! {
         <ContextProvider<Workbench> context={(*bench).clone()}>
             <ContextProvider<RowStore> context={bench.rows().clone()}>
-                <BrowserRouter>
-                    <Frame />
-                </BrowserRouter>
+                <Frame />
             </ContextProvider<RowStore>>
         </ContextProvider<Workbench>>
     }
@@ -48,45 +45,39 @@ fn open() -> Workbench {
     );
     let relay = Relay::new(rows.clone(), Callback::from(move |ms| stats.spend(ms)));
     relay.connect();
+    route::listen();
     Workbench::new(rows, drafts, relay, NoticeStore::default())
 }
 
 #[component]
 fn Frame() -> Html {
+    let route = use_route();
     html! { <>
         <header class="bar">
-            <Link<Route> to={Route::Deck} classes="brand">{ "cipdeck" }</Link<Route>>
-            <Navigation />
+            { link(Route::Deck, "brand", html! { "cipdeck" }) }
+            { navigation(route) }
             <Connection />
             <ThemeToggle />
         </header>
-        <main>
-            <Switch<Route> render={page} />
-        </main>
+        <main>{ page(route) }</main>
     </> }
 }
 
-#[component]
-fn Navigation() -> Html {
-    let route = use_route::<Route>();
-    let link = |to: Route, words: AttrValue| {
-        let here = match (&route, &to) {
-            (Some(Route::Block { .. }), Route::Deck) => true,
-            (Some(route), to) => route == to,
-            (None, _) => false,
-        };
+fn navigation(route: Route) -> Html {
+    let entry = |to: Route, words: AttrValue| {
+        let here = matches!((route, to), (Route::Block(_), Route::Deck)) || route == to;
         html! {
             <li aria-current={here.then_some("page")} class={classes!(here.then_some("here"))}>
-                <Link<Route> {to}>{ words }</Link<Route>>
+                { link(to, "", html! { words }) }
             </li>
         }
     };
     html! {
         <nav aria-label={tr!("nav.label")}>
             <ul>
-                { link(Route::Deck, tr!("nav.deck")) }
-                { link(Route::Monitor, tr!("nav.monitor")) }
-                { link(Route::Help, tr!("nav.help")) }
+                { entry(Route::Deck, tr!("nav.deck")) }
+                { entry(Route::Monitor, tr!("nav.monitor")) }
+                { entry(Route::Help, tr!("nav.help")) }
             </ul>
         </nav>
     }
@@ -95,10 +86,7 @@ fn Navigation() -> Html {
 fn page(route: Route) -> Html {
     match route {
         Route::Deck => html! { <DeckPage /> },
-        Route::Block { id } => match id.parse::<DeckId>() {
-            Ok(id) => html! { <DeckPage {id} /> },
-            Err(_) => not_found(),
-        },
+        Route::Block(id) => html! { <DeckPage {id} /> },
         Route::Monitor => html! { <MonitorPage /> },
         Route::Help => html! { <HelpPage /> },
         Route::NotFound => not_found(),

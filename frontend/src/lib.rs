@@ -23,7 +23,7 @@ pub mod kit;
 pub mod net;
 pub mod notice;
 pub mod pages;
-mod route;
+pub mod route;
 pub mod store;
 mod theme;
 pub mod workbench;

@@ -115,7 +115,7 @@ impl Bench {
                 }
             }
             Event::Wants(wants) => {
-                self.engine.permit(&wants, self.permitted.get(&wants.block).is_some(), now)
+                self.engine.permit(&wants, self.permitted.get(&wants.block).is_some(), now);
             }
             Event::Changed { block, view } => return Some(News::Changed(block, view)),
             Event::Finished { block, exchange, .. } => return Some(News::Finished(block, exchange)),

@@ -28,9 +28,9 @@ pub struct CheckField {
 impl CheckField {
     /// A native check box with its findings.
     pub fn draw(self) -> Html {
-        let on_change = self.on_change;
+        let changed = self.on_change;
         let onchange = move |event: Event| {
-            on_change.emit(event.target_unchecked_into::<HtmlInputElement>().checked());
+            changed.emit(event.target_unchecked_into::<HtmlInputElement>().checked());
         };
         let invalid = self.remarks.iter().any(Remark::is_error).then_some("true");
         let input = html! {

@@ -2,12 +2,11 @@
 
 use cipdeck_shared::config::{MsgCipGeneric, PathError, Target, TargetPath};
 use yew::prelude::*;
-use yew_router::prelude::*;
 
 use crate::{
     hooks::{use_link, use_workbench},
     i18n::{rule_text, tr},
-    route::Route,
+    route::{self, Route},
     workbench::{Place, Workbench},
 };
 
@@ -18,7 +17,6 @@ const DEMO: &str = "0,0";
 #[component]
 pub fn FirstStart() -> Html {
     let bench = use_workbench();
-    let navigator = use_navigator();
     use_link();
     let typed = use_state(String::new);
     let oninput = use_callback(typed.clone(), |event: InputEvent, typed| {
@@ -32,9 +30,7 @@ pub fn FirstStart() -> Html {
         Callback::from(move |path: String| {
             let id = bench.add(MsgCipGeneric::product_name(&path));
             bench.run(id, None);
-            if let Some(navigator) = &navigator {
-                navigator.push(&Route::Block { id: id.to_string() });
-            }
+            route::go(Route::Block(id));
         })
     };
     let onsubmit = use_callback((go.clone(), path, can_send), |event: SubmitEvent, (go, path, can_send)| {

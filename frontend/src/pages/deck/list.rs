@@ -5,14 +5,13 @@ use std::rc::Rc;
 use cipdeck_shared::config::MsgCipGeneric;
 use web_sys::HtmlInputElement;
 use yew::prelude::*;
-use yew_router::prelude::*;
 
 use super::dialogs::{Asked, dialog};
 use crate::{
     hooks::{use_draft, use_row, use_workbench},
     i18n::tr,
     kit::state_mark,
-    route::Route,
+    route::{self, Route, link},
     store::DeckId,
 };
 
@@ -27,14 +26,9 @@ pub(super) struct BlockListProps {
 #[component]
 pub(super) fn BlockList(props: &BlockListProps) -> Html {
     let bench = use_workbench();
-    let navigator = use_navigator();
     let asked = use_state(|| None::<Asked>);
     let filter = use_state(String::new);
-    let open = use_callback(navigator, |id: DeckId, navigator| {
-        if let Some(navigator) = navigator {
-            navigator.push(&Route::Block { id: id.to_string() });
-        }
-    });
+    let open = use_callback((), |id: DeckId, ()| route::go(Route::Block(id)));
     let on_new = use_callback((bench.clone(), open.clone()), |_: MouseEvent, (bench, open)| {
         let name = tr!("list.new_name").to_string();
         open.emit(bench.add(MsgCipGeneric { name, ..MsgCipGeneric::product_name("0,0") }));
@@ -115,13 +109,13 @@ fn Entry(props: &EntryProps) -> Html {
     }
     html! {
         <li class={classes!("entry", props.chosen.then_some("chosen"))} data-test="entry">
-            <Link<Route> to={Route::Block { id: props.id.to_string() }}>
+            { link(Route::Block(props.id), "", html! { <>
                 { state_mark(row.status.phase, true) }
                 <span class="entry-name">{ &config.name }</span>
                 if bench.is_unsaved(props.id) {
                     <span class="entry-draft">{ tr!("list.unsaved") }</span>
                 }
-            </Link<Route>>
+            </> }) }
         </li>
     }
 }

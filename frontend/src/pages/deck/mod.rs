@@ -5,14 +5,13 @@ mod first_start;
 mod list;
 
 use yew::prelude::*;
-use yew_router::prelude::*;
 
 use self::{first_start::FirstStart, list::BlockList};
 use crate::{
     hooks::{use_ids, use_link, use_row, use_title, use_workbench},
     i18n::tr,
     pages::block::BlockPane,
-    route::Route,
+    route::{self, Redirect, Route},
     store::DeckId,
     workbench::Gone,
 };
@@ -68,8 +67,8 @@ fn Chosen(props: &ChosenProps) -> Html {
         return html! { <BlockPane key={id.to_string()} {id} /> };
     }
     match bench.gone(id) {
-        Some(Gone::Stored(to)) => html! { <Redirect<Route> to={Route::Block { id: to.to_string() }} /> },
-        Some(Gone::Deleted) => html! { <Redirect<Route> to={Route::Deck} /> },
+        Some(Gone::Stored(to)) => html! { <Redirect to={Route::Block(to)} /> },
+        Some(Gone::Deleted) => html! { <Redirect to={Route::Deck} /> },
         None if bench.relay().is_undecided() => {
             html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> }
         }
@@ -81,11 +80,10 @@ fn Chosen(props: &ChosenProps) -> Html {
 #[component]
 fn Missing(props: &ChosenProps) -> Html {
     let bench = use_workbench();
-    let navigator = use_navigator();
     let has_draft = bench.drafts().draft(props.id).is_some();
-    let on_rescue = use_callback((bench, navigator, props.id), |_: MouseEvent, (bench, navigator, id)| {
-        if let (Some(id), Some(navigator)) = (bench.rescue(*id), navigator) {
-            navigator.push(&Route::Block { id: id.to_string() });
+    let on_rescue = use_callback((bench, props.id), |_: MouseEvent, (bench, id)| {
+        if let Some(id) = bench.rescue(*id) {
+            route::go(Route::Block(id));
         }
     });
     html! {

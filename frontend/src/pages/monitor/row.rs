@@ -1,14 +1,13 @@
 //! One block on one line. It knows its id; everything else comes from the store.
 
 use yew::prelude::*;
-use yew_router::prelude::Link;
 
 use crate::{
     browser,
     hooks::{use_row, use_second},
     kit::state_mark,
     pages::block::{age_words, decode, duration, error_words},
-    route::Route,
+    route::{Route, link},
     store::{DeckId, Row},
 };
 
@@ -33,7 +32,7 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
         <tr aria-rowindex={props.index.to_string()} data-test="monitor-row" data-block={props.id.to_string()}>
             <td class="col-state">{ state_mark(status.phase, false) }</td>
             <th scope="row" class="col-name">
-                <Link<Route> to={Route::Block { id: props.id.to_string() }}>{ &row.config.name }</Link<Route>>
+                { link(Route::Block(props.id), "", html! { &row.config.name }) }
             </th>
             <td class="col-target mono">{ &row.config.target_cfg.path }</td>
             <td class={classes!("col-value", (!status.q).then_some("stale"))}>{ value(&row) }</td>
