@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use serde_json::Value;
 use tempfile::TempDir;
-use thirtyfour::common::capabilities::firefox::LoggingPrefsLogLevel;
 use thirtyfour::prelude::*;
-use thirtyfour::{ChromeCapabilities, Key, TypingData};
+use thirtyfour::{Key, TypingData};
 use tokio::sync::{Semaphore, SemaphorePermit};
 
+use crate::chromium::{capabilities, port};
 use crate::process::Process;
 use crate::wait::eventually;
 use crate::{PATIENCE, tools};
@@ -291,34 +291,4 @@ async fn shown(driver: &WebDriver, xpath: &str) -> Option<WebElement> {
 
 async fn text_of(driver: &WebDriver) -> Option<String> {
     driver.find(By::Tag("body")).await.ok()?.text().await.ok()
-}
-
-fn capabilities(profile: &TempDir) -> ChromeCapabilities {
-    let mut capabilities = DesiredCapabilities::chrome();
-    let profile = format!("--user-data-dir={}", profile.path().display());
-    for argument in ARGUMENTS.into_iter().chain([profile.as_str()]) {
-        capabilities.add_arg(argument).expect("an argument is text");
-    }
-    capabilities.set_browser_log_level(LoggingPrefsLogLevel::All).expect("a level is text");
-    capabilities
-}
-
-/// Without a display, and without talking to anybody but the relay.
-const ARGUMENTS: [&str; 11] = [
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--disable-dev-shm-usage",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--hide-scrollbars",
-    "--window-size=1440,1043",
-];
-
-/// From `ChromeDriver was started successfully on port 39731.`
-fn port(line: &str) -> Option<u16> {
-    line.strip_prefix("ChromeDriver was started successfully on port ")?.strip_suffix('.')?.parse().ok()
 }

@@ -8,6 +8,7 @@
 
 pub mod block;
 pub mod browser;
+mod chromium;
 pub mod command;
 pub mod fake_plc;
 pub mod frame;
