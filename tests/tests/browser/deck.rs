@@ -107,3 +107,30 @@ async fn save_if_needed(user: &mut Browser) {
 fn entry(name: &str) -> String {
     format!("{}//*[normalize-space(.)='{name}']", part("entry"))
 }
+
+#[tokio::test]
+async fn every_view_has_an_address_that_survives_back_and_reload() {
+    let relay = Relay::start().await;
+    relay.rest.create(&block::product_name("0,0")).await;
+    let journey = Journey::start("addresses").await;
+    let mut user = journey.open("user", &relay.page()).await;
+    user.click("Monitor").await;
+    user.click("get-1-1-7").await;
+    user.find("the block", &part("form"), PATIENCE).await;
+    let address = user.driver().current_url().await.expect("an address").to_string();
+
+    user.driver().back().await.expect("there is a page before");
+    user.see("of 1 failing", PATIENCE).await;
+    user.driver().forward().await.expect("there is a page after");
+    user.find("the block", &part("form"), PATIENCE).await;
+    user.driver().refresh().await.expect("the page loads again");
+    user.find("the block", &part("form"), PATIENCE).await;
+    assert_eq!(user.driver().current_url().await.expect("an address").as_str(), address);
+    user.driver().goto(format!("{}no/such/page", relay.page())).await.expect("the page loads");
+    user.see("There is no such page", PATIENCE).await;
+    user.shot("no-such-page").await;
+    user.click("To the deck").await;
+    user.click("get-1-1-7").await;
+    user.find("the block", &part("form"), PATIENCE).await;
+    user.close().await;
+}
