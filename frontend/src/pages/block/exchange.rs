@@ -3,9 +3,11 @@
 use std::rc::Rc;
 
 use cipdeck_shared::{
-    api::ExchangeView,
-    config::{BlockId, read_hex},
+    api::{BlockStatus, ExchangeView},
+    config::{BlockId, read_hex, write_hex},
     dissect,
+    engine::Phase,
+    wire::MessageRouterReply,
 };
 use gloo_timers::callback::Timeout;
 use yew::{platform::spawn_local, prelude::*};
@@ -17,6 +19,8 @@ use crate::{browser, hooks::use_workbench, i18n::tr, kit::HexView, net::rest, st
 pub(super) struct ExchangeProps {
     pub(super) subject: Rc<Subject>,
     pub(super) exchange: Option<Rc<ExchangeView>>,
+    /// The exchange is not that of the newest run: it has not been fetched yet.
+    pub(super) earlier: bool,
 }
 
 /// Request and reply, byte by byte.
@@ -41,7 +45,13 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
             } else {
                 <p class="quiet">{ tr!("bytes.no_request") }</p>
             }
-            <h2>{ tr!("bytes.reply") }<span class="count">{ count(reply_view.as_ref().as_ref().map(|(bytes, _)| bytes.len())) }</span></h2>
+            <h2>
+                { tr!("bytes.reply") }
+                <span class="count">{ count(reply_view.as_ref().as_ref().map(|(bytes, _)| bytes.len())) }</span>
+                if props.earlier {
+                    <span class="count" data-test="reply-earlier">{ tr!("bytes.earlier") }</span>
+                }
+            </h2>
             if let Some((bytes, tree)) = &*reply_view {
                 <HexView label={tr!("bytes.reply")} bytes={bytes.clone()} tree={tree.clone()} test="reply-bytes" />
             } else {
@@ -50,6 +60,31 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
         </>
     }
 }
+
+/// Whether an exchange cannot be that of the newest run, which it is fetched after.
+pub(super) fn is_earlier(exchange: &ExchangeView, status: &BlockStatus) -> bool {
+    let reply = exchange.response.as_deref().and_then(|response| read_hex(response).ok());
+    let reply = reply.as_deref().and_then(|reply| MessageRouterReply::decode(reply).ok());
+    let same = match (status.phase, reply) {
+        (Phase::Done, Some(reply)) => write_hex(reply.data) == status.res_data,
+        (Phase::Done, None) => false,
+        (Phase::Failed, Some(reply)) => match status.status.error_id {
+            REFUSED => u16::from(reply.status.0) == status.status.sub_error_id,
+            // A reply that could not be used: too long, or of another service.
+            error_id => MAY_HAVE_A_REPLY.contains(&error_id),
+        },
+        (Phase::Failed, None) => status.status.error_id != REFUSED,
+        // A new run is under way: it will have its own.
+        _ => return false,
+    };
+    !same || exchange.request != status.request
+}
+
+/// `ErrorID` of a CIP error reply.
+const REFUSED: u16 = 224;
+
+/// `ErrorID`s that a reply with bytes can end in: the data does not fit, the reply makes no sense.
+const MAY_HAVE_A_REPLY: [u16; 2] = [33, 69];
 
 fn count(bytes: Option<usize>) -> AttrValue {
     bytes.map_or_else(AttrValue::default, |count| tr!("field.byte_count", count = count))
@@ -80,5 +115,52 @@ async fn fetch(bench: &crate::workbench::Workbench, block: BlockId) {
     // Without an answer the bytes stay as they are; the connection says why.
     if let Ok(Some(exchange)) = rest::newest_exchange(block).await {
         bench.rows().put_exchange(DeckId::Stored(block), exchange);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cipdeck_shared::engine::BlockView;
+
+    const REQUEST: &str = "0e03200124013007";
+
+    fn exchange(response: Option<&str>) -> ExchangeView {
+        ExchangeView {
+            at: String::new(),
+            request: REQUEST.to_owned(),
+            response: response.map(str::to_owned),
+            request_frame: None,
+            response_frame: None,
+        }
+    }
+
+    fn status(phase: Phase, error_id: u16, sub_error_id: u16, res_data: &str) -> BlockStatus {
+        let mut status =
+            BlockStatus::new(BlockId(1), &BlockView { phase, ..BlockView::default() }, None, None);
+        (status.status.error_id, status.status.sub_error_id) = (error_id, sub_error_id);
+        (status.request, status.res_data) = (REQUEST.to_owned(), res_data.to_owned());
+        status
+    }
+
+    #[test]
+    fn bytes_of_an_earlier_run_are_told_from_those_of_the_newest() {
+        let (good, refusal) = (exchange(Some("8e0000000a0b")), exchange(Some("8e000500")));
+        for (name, exchange, status, earlier) in [
+            ("its own value", &good, status(Phase::Done, 0, 0, "0a0b"), false),
+            ("another value", &good, status(Phase::Done, 0, 0, "0a0c"), true),
+            ("its own refusal", &refusal, status(Phase::Failed, 224, 5, ""), false),
+            ("a value before a refusal", &good, status(Phase::Failed, 224, 5, ""), true),
+            ("a value before a timeout", &good, status(Phase::Failed, 55, 115, ""), true),
+            ("a timeout", &exchange(None), status(Phase::Failed, 55, 115, ""), false),
+            ("nothing before a value", &exchange(None), status(Phase::Done, 0, 0, "0a0b"), true),
+            ("a value that was too long", &good, status(Phase::Failed, 33, 48, ""), false),
+            ("while the next run is under way", &good, status(Phase::Sent, 0, 0, ""), false),
+        ] {
+            assert_eq!(is_earlier(exchange, &status), earlier, "{name}");
+        }
+        let other =
+            BlockStatus { request: "0e03200124013001".to_owned(), ..status(Phase::Done, 0, 0, "0a0b") };
+        assert!(is_earlier(&good, &other), "the answer to another request");
     }
 }

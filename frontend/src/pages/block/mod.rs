@@ -19,8 +19,14 @@ use std::rc::Rc;
 use yew::prelude::*;
 
 use self::{
-    axis::axis, drawing::drawing, exchange::Exchange, form::Form, head::Head, notice::NoticeBar,
-    outcome::Outcome, subject::Subject,
+    axis::axis,
+    drawing::drawing,
+    exchange::{Exchange, is_earlier},
+    form::Form,
+    head::Head,
+    notice::NoticeBar,
+    outcome::Outcome,
+    subject::Subject,
 };
 use crate::{
     hooks::{use_draft, use_link, use_row, use_workbench},
@@ -61,6 +67,8 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
     let Some((row, subject)) = row.zip((*subject).clone()) else { return html! {} };
     let subject = Rc::new(subject);
     let repeats = row.status.input && row.config.ctrl_cfg.trigger_type != 0;
+    // The bytes of a block that repeats are always a moment old.
+    let earlier = !repeats && row.exchange.as_ref().is_some_and(|exchange| is_earlier(exchange, &row.status));
     html! {
         <article class="block" aria-label={subject.draft.config.name.clone()}>
             <h1 class="unseen">{ &subject.draft.config.name }</h1>
@@ -81,7 +89,7 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
                 <Outcome row={row.clone()} />
             </section>
             <section class="bytes" aria-label={tr!("bytes.label")}>
-                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} />
+                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} {earlier} />
             </section>
         </article>
     }
