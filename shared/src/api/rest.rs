@@ -46,7 +46,7 @@ pub struct RunRequest {
 pub struct Checked {
     /// All findings.
     pub findings: Vec<Finding>,
-    /// Message router bytes as hexadecimal text; absent with errors.
+    /// Message router bytes as hexadecimal text; null with errors.
     pub request: Option<String>,
 }
 

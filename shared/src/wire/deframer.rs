@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::cursor::{DecodeError, DecodeErrorKind, Reader};
-use super::encapsulation::{Command, Encapsulation, HEADER_SIZE};
+use super::encapsulation::{Command, Encapsulation};
 
 /// Collects bytes until a frame is whole. After an error the stream cannot be resynchronised: drop it.
 #[derive(Debug, Default)]
@@ -56,12 +56,6 @@ impl Deframer {
     /// How many bytes of an unfinished frame are waiting.
     pub const fn pending(&self) -> usize {
         self.buffer.len() - self.used
-    }
-
-    /// Whether a frame has begun but its header is not whole.
-    pub const fn is_inside_header(&self) -> bool {
-        let pending = self.pending();
-        pending > 0 && pending < HEADER_SIZE
     }
 }
 
