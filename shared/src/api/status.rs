@@ -105,15 +105,4 @@ impl BlockStatus {
             last,
         }
     }
-
-    /// Takes over a newer status of the same block and keeps the edges of both, newest last.
-    pub fn merge(&mut self, newer: Self) {
-        let mut edges = core::mem::take(&mut self.edges);
-        let mut dropped = self.edges_dropped + newer.edges_dropped;
-        edges.extend_from_slice(&newer.edges);
-        let excess = edges.len().saturating_sub(MAX_EDGES);
-        edges.drain(..excess);
-        dropped += excess as u64;
-        *self = Self { edges, edges_dropped: dropped, ..newer };
-    }
 }
