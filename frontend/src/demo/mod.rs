@@ -7,7 +7,7 @@ use std::{cell::RefCell, fmt, rc::Rc};
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView, LastSuccess},
     config::{BlockId, write_hex},
-    engine::{BlockView, CommandError, Exchange, Instant},
+    engine::{BlockView, CommandError, Instant},
     plan::MessagePlan,
 };
 use gloo_timers::callback::Timeout;
@@ -93,7 +93,7 @@ impl Demo {
                 News::Changed(block, view) => self.changed(block, &view),
                 News::Finished(block, exchange) => {
                     if let Some(id) = self.id(block) {
-                        self.0.rows.put_exchange(id, exchange_view(&exchange));
+                        self.0.rows.put_exchange(id, ExchangeView::new(browser::wall_clock(), &exchange));
                     }
                 }
             }
@@ -164,15 +164,4 @@ impl fmt::Debug for Demo {
 )]
 fn now() -> Instant {
     Instant((browser::now_ms() * 1_000.0) as u64)
-}
-
-fn exchange_view(exchange: &Exchange) -> ExchangeView {
-    let hex = |bytes: &Option<Vec<u8>>| bytes.as_deref().map(write_hex);
-    ExchangeView {
-        at: browser::wall_clock(),
-        request: write_hex(&exchange.request),
-        response: hex(&exchange.response),
-        request_frame: hex(&exchange.request_frame),
-        response_frame: hex(&exchange.response_frame),
-    }
 }

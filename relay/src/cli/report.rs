@@ -1,7 +1,7 @@
 //! What is printed about findings and about a message that has ended.
 
 use cipdeck_shared::api::{self, BlockStatus, Checked};
-use cipdeck_shared::config::{MsgCipGeneric, write_hex};
+use cipdeck_shared::config::{MsgCipGeneric, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
@@ -80,9 +80,9 @@ impl<'a> Report<'a> {
                 lines.push("  the reply has no data".to_owned());
             }
         }
-        lines.push(format!("  request  {}", spaced(&self.status.request)));
+        lines.push(format!("  request  {}", space_hex(&self.status.request)));
         if let Some(response) = &self.response {
-            lines.push(format!("  reply    {}", spaced(response)));
+            lines.push(format!("  reply    {}", space_hex(response)));
         }
         lines.join("\n")
     }
@@ -111,12 +111,6 @@ fn duration(micros: Option<u64>) -> String {
         None => "an unknown time".to_owned(),
         Some(micros) => format!("{}.{:03} ms", micros / 1_000, micros % 1_000),
     }
-}
-
-/// `0e 03 20 01`
-fn spaced(hex: &str) -> String {
-    let pairs = hex.as_bytes().chunks(2).map(|pair| String::from_utf8_lossy(pair));
-    pairs.collect::<Vec<_>>().join(" ")
 }
 
 /// Our own types have string keys only, which is all that could fail.

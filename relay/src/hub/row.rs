@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
+use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
 use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
 
 use crate::wall_clock;
@@ -95,15 +95,7 @@ impl Row {
     }
 
     pub(super) fn exchanges(&self) -> Vec<ExchangeView> {
-        let hex = |bytes: &Option<Vec<u8>>| bytes.as_deref().map(write_hex);
-        let view = |(at, exchange): &(String, Exchange)| ExchangeView {
-            at: at.clone(),
-            request: write_hex(&exchange.request),
-            response: hex(&exchange.response),
-            request_frame: hex(&exchange.request_frame),
-            response_frame: hex(&exchange.response_frame),
-        };
-        self.exchanges.iter().map(view).collect()
+        self.exchanges.iter().map(|(at, exchange)| ExchangeView::new(at.clone(), exchange)).collect()
     }
 
     /// A message begins with EN alone, at its trigger.

@@ -6,7 +6,8 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::status::BlockStatus;
-use crate::config::Block;
+use crate::config::{Block, write_hex};
+use crate::engine::Exchange;
 use crate::plan::{self, Rule, Severity};
 
 /// `GET /api/v1/health`.
@@ -113,6 +114,20 @@ pub struct ExchangeView {
     pub request_frame: Option<String>,
     /// Encapsulation frame that was read, if one was.
     pub response_frame: Option<String>,
+}
+
+impl ExchangeView {
+    /// What the engine kept of a message that ended `at`.
+    pub fn new(at: String, exchange: &Exchange) -> Self {
+        let hex = |bytes: &Option<Vec<u8>>| bytes.as_deref().map(write_hex);
+        Self {
+            at,
+            request: write_hex(&exchange.request),
+            response: hex(&exchange.response),
+            request_frame: hex(&exchange.request_frame),
+            response_frame: hex(&exchange.response_frame),
+        }
+    }
 }
 
 /// `application/problem+json`.

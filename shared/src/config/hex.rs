@@ -26,6 +26,18 @@ pub fn write_hex(bytes: &[u8]) -> String {
     text
 }
 
+/// For reading: `0a0b` is `0a 0b`.
+pub fn space_hex(hex: &str) -> String {
+    let mut text = String::with_capacity(hex.len() + hex.len() / 2);
+    for (position, digit) in hex.chars().enumerate() {
+        if position > 0 && position % 2 == 0 {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Where hexadecimal text is unreadable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HexError {
@@ -93,6 +105,7 @@ mod tests {
         }
         assert_eq!(read_hex(" \n"), Ok(Vec::new()));
         assert_eq!(write_hex(&[0x0A, 0xFF]), "0aff");
+        assert_eq!((space_hex("a10a").as_str(), space_hex("").as_str()), ("a1 0a", ""));
     }
 
     #[test]

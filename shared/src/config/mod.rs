@@ -12,7 +12,7 @@ mod target_path;
 
 pub use self::block::{Block, Channel};
 pub use self::block_id::BlockId;
-pub use self::hex::{HexError, HexErrorKind, read_hex, write_hex};
+pub use self::hex::{HexError, HexErrorKind, read_hex, space_hex, write_hex};
 pub use self::msg_cip_generic::{
     CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,
 };

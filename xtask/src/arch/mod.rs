@@ -29,6 +29,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "engine::BlockView",
             "engine::Cause",
             "engine::CipStatus",
+            "engine::Exchange",
             "engine::Phase",
             "engine::StatusBits",
         ],

@@ -1,5 +1,6 @@
 //! One block on one line. It knows its id; everything else comes from the store.
 
+use cipdeck_shared::config::space_hex;
 use yew::prelude::*;
 
 use crate::{
@@ -50,24 +51,7 @@ fn value(row: &Row) -> String {
     let values = decode(&last.request, &last.res_data);
     // Bytes are a fact; a guess needs more room than a line has.
     if values.iter().any(|value| value.guess) {
-        return spaced(&last.res_data);
+        return space_hex(&last.res_data);
     }
     values.iter().map(|value| value.text.as_str()).collect::<Vec<_>>().join(" · ")
-}
-
-/// `a10a` is `a1 0a`.
-fn spaced(hex: &str) -> String {
-    let digits: Vec<char> = hex.chars().collect();
-    digits.chunks(2).map(|byte| byte.iter().collect::<String>()).collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_are_told_apart() {
-        assert_eq!(spaced("a10a"), "a1 0a");
-        assert_eq!(spaced(""), "");
-    }
 }

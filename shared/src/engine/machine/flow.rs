@@ -64,7 +64,7 @@ impl Engine {
         self.rearm(block);
     }
 
-    pub(super) fn enqueue(&mut self, block: BlockId, now: Instant) {
+    fn enqueue(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         self.next_shot += 1;
         let plan = match &entry.plan {
@@ -93,7 +93,7 @@ impl Engine {
     }
 
     /// A message has ended: its buffer is free, its client forgets it, and its owner hears of it.
-    pub(super) fn release(&mut self, block: BlockId, now: Instant) {
+    fn release(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         entry.trigger.ended(now);
         let view = Box::new(entry.view());
@@ -118,7 +118,7 @@ impl Engine {
         }
     }
 
-    pub(super) fn grant(&mut self, channel: Channel, now: Instant) {
+    fn grant(&mut self, channel: Channel, now: Instant) {
         if core::mem::replace(&mut self.buffers(channel).granting, true) {
             return;
         }
@@ -133,7 +133,7 @@ impl Engine {
         }
     }
 
-    pub(super) fn submit(&mut self, block: BlockId, now: Instant) {
+    fn submit(&mut self, block: BlockId, now: Instant) {
         let Some(active) = self.blocks.get_mut(&block).and_then(|entry| entry.active.as_mut()) else {
             return;
         };
@@ -157,14 +157,14 @@ impl Engine {
         });
     }
 
-    pub(super) fn announce_positions(&mut self, channel: Channel) {
+    fn announce_positions(&mut self, channel: Channel) {
         let waiting: Vec<_> = self.buffers(channel).waiting().take(ANNOUNCED_POSITIONS).collect();
         for block in waiting {
             self.announce_position(block);
         }
     }
 
-    pub(super) fn announce_position(&mut self, block: BlockId) {
+    fn announce_position(&mut self, block: BlockId) {
         if let Some(entry) = self.blocks.get(&block) {
             let view = Box::new(BlockView { position: self.position(block, entry), ..entry.glance() });
             self.events.push_back(Event::Changed { block, view });

@@ -71,7 +71,7 @@ impl Engine {
         Some(result)
     }
 
-    pub(super) fn output(&mut self, target: &Target, output: Output, now: Instant) {
+    fn output(&mut self, target: &Target, output: Output, now: Instant) {
         match output {
             Output::Connect(link) => {
                 self.links.insert(link, target.clone());
