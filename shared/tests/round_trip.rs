@@ -41,12 +41,12 @@ fn epath() -> impl Strategy<Value = Epath> {
         LogicalKind::ConnectionPoint,
         LogicalKind::Attribute,
     ]);
-    let logical = (kind, number()).prop_map(|(kind, value)| (Some(kind), value, 1, 0));
-    let port = (1..=14_u8, any::<u8>()).prop_map(|(port, link)| (None, 0, port, link));
+    let logical = (kind, number()).prop_map(|(kind, value)| (Some(kind), value, 1, Vec::new()));
+    let port = (1..=u16::MAX, vec(any::<u8>(), 1..=40)).prop_map(|(port, link)| (None, 0, port, link));
     vec(prop_oneof![4 => logical, 1 => port], 0..8).prop_map(|segments| {
         segments.into_iter().fold(Epath::default(), |path, (kind, value, port, link)| match kind {
             Some(kind) => path.then(kind, value),
-            None => path.hop(PortSegment::new(port, link).unwrap()),
+            None => path.hop(PortSegment::with_address(port, &link).unwrap()),
         })
     })
 }

@@ -17,4 +17,4 @@ pub use self::msg_cip_generic::{
     CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,
 };
 pub use self::number::{NumberError, read_number};
-pub use self::target_path::{Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};
+pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};

@@ -1,10 +1,11 @@
-//! `TargetCfg.Path`: `"<port>,<node or slot>"` once or twice. 2080-RM001D p. 182.
+//! `TargetCfg.Path`: `"<port>,<node or slot>"` once or twice. 2080-RM001D p. 182. A third hop, which a controller does
+//! not take, is read as well.
 
 use alloc::string::String;
 use core::fmt;
 use core::str::FromStr;
 
-use crate::wire::PortSegment;
+use crate::wire::{Epath, PortSegment, Segment};
 
 /// `STRING[80]`.
 pub const MAX_PATH: usize = 80;
@@ -15,13 +16,26 @@ const ETHERNET: &str = "4";
 /// TCP port of explicit messages when the path names none.
 const DEFAULT_TCP_PORT: u16 = 44818;
 
+/// Hops of the controller's own `Path`. 2080-RM001D p. 182.
+pub const CONTROLLER_HOPS: usize = 2;
+
+/// Hops behind the TCP endpoint that we take.
+const MAX_ROUTE_HOPS: usize = 2;
+
 /// A readable path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TargetPath {
     /// Where the TCP connection goes.
     pub target: Target,
-    /// The second hop, behind the TCP endpoint.
-    pub route: Option<PortSegment>,
+    /// The hops behind the TCP endpoint: port segments only, none for the endpoint itself.
+    pub route: Epath,
+}
+
+impl TargetPath {
+    /// How many hops the path has, the TCP endpoint included.
+    pub fn hops(&self) -> usize {
+        1 + self.route.segments().len()
+    }
 }
 
 /// Where messages go.
@@ -67,7 +81,7 @@ pub enum PathError {
     TooLong,
     /// An odd number of parts: a port without its address.
     HalfHop,
-    /// More than two hops.
+    /// More than three hops, or a third one that does not leave the chassis.
     TooManyHops,
     /// The first port is a serial port (2, 5..=9).
     SerialPort,
@@ -75,9 +89,9 @@ pub enum PathError {
     BadPort,
     /// The first address is not an IPv4 address, a name or either with a TCP port.
     BadAddress,
-    /// The second hop's port is not 1..=14.
+    /// The port of a further hop is not 1..=65535.
     BadRoutePort,
-    /// The second hop's address is not a slot 0..=255.
+    /// The address of a further hop is neither a slot 0..=255 nor an IPv4 address; the backplane has slots only.
     BadSlot,
 }
 
@@ -93,16 +107,16 @@ impl FromStr for TargetPath {
         }
         let mut parts = text.split(',').map(str::trim);
         let (port, node) = (parts.next().unwrap_or_default(), parts.next().ok_or(PathError::HalfHop)?);
-        let hop = (parts.next(), parts.next());
-        if parts.next().is_some() {
-            return Err(PathError::TooManyHops);
-        }
         let target = first_hop(port, node)?;
-        let route = match hop {
-            (None, _) => None,
-            (Some(_), None) => return Err(PathError::HalfHop),
-            (Some(port), Some(slot)) => Some(second_hop(port, slot)?),
-        };
+        let mut route = Epath::default();
+        while let Some(port) = parts.next() {
+            let address = parts.next().ok_or(PathError::HalfHop)?;
+            let hop = further_hop(port, address)?;
+            if route.segments().len() == MAX_ROUTE_HOPS || stays_in_the_chassis(&route, &hop) {
+                return Err(PathError::TooManyHops);
+            }
+            route = route.hop(hop);
+        }
         Ok(Self { target, route })
     }
 }
@@ -164,24 +178,53 @@ fn host_name(name: &str) -> Option<&str> {
     name.split('.').all(label).then_some(name)
 }
 
-fn second_hop(port: &str, slot: &str) -> Result<PortSegment, PathError> {
-    let slot = slot.parse().map_err(|_| PathError::BadSlot)?;
-    port.parse().ok().and_then(|port| PortSegment::new(port, slot)).ok_or(PathError::BadRoutePort)
+fn further_hop(port: &str, address: &str) -> Result<PortSegment, PathError> {
+    let port: u16 = port.parse().map_err(|_| PathError::BadRoutePort)?;
+    let hop = match (address.parse::<u8>(), address.parse::<core::net::Ipv4Addr>()) {
+        (Ok(slot), _) => PortSegment::new(port, slot),
+        (Err(_), Ok(ip)) if port != BACKPLANE => {
+            PortSegment::with_address(port, alloc::format!("{ip}").as_bytes())
+        }
+        _ => return Err(PathError::BadSlot),
+    };
+    hop.ok_or(PathError::BadRoutePort)
 }
+
+/// From backplane to backplane: a module's port 1 is the backplane that the message came over.
+fn stays_in_the_chassis(route: &Epath, hop: &PortSegment) -> bool {
+    let from = route.segments().last();
+    hop.port() == BACKPLANE && matches!(from, Some(Segment::Port(from)) if from.port() == BACKPLANE)
+}
+
+/// The port of a chassis; what is behind it has slot numbers.
+const BACKPLANE: u16 = 1;
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec;
 
     #[test]
     fn the_manuals_examples_are_read() {
         let direct: TargetPath = "4,192.168.1.100".parse().unwrap();
         let endpoint = Endpoint { host: Host::Ip([192, 168, 1, 100]), port: 44818 };
-        assert_eq!(direct, TargetPath { target: Target::Network(endpoint.clone()), route: None });
+        assert_eq!(direct, TargetPath { target: Target::Network(endpoint.clone()), route: Epath::default() });
         let routed: TargetPath = "4,192.168.1.100,1,0".parse().unwrap();
-        assert_eq!(routed, TargetPath { target: Target::Network(endpoint), route: PortSegment::new(1, 0) });
+        assert_eq!((routed.target, routed.route.bytes()), (Target::Network(endpoint), vec![1, 0]));
         assert_eq!("0,0".parse::<TargetPath>().unwrap().target, Target::BuiltIn);
         assert_eq!("6,1".parse::<TargetPath>(), Err(PathError::SerialPort));
+    }
+
+    #[test]
+    fn further_hops_are_slots_addresses_and_extended_ports() {
+        for (text, hops, bytes) in [
+            ("4,10.0.0.1,2,192.168.1.55", 2, &b"\x12\x0C192.168.1.55"[..]),
+            ("4,10.0.0.1,18,10.0.0.20", 2, b"\x1F\x09\x12\x0010.0.0.20\0"),
+            ("4,10.0.0.1, 1, 3, 2, 192.168.1.100", 3, b"\x01\x03\x12\x0D192.168.1.100\0"),
+        ] {
+            let path: TargetPath = text.parse().unwrap();
+            assert_eq!((path.hops(), path.route.bytes()), (hops, bytes.to_vec()), "{text}");
+        }
     }
 
     #[test]
@@ -205,7 +248,9 @@ mod tests {
             (long.as_str(), PathError::TooLong),
             ("4", PathError::HalfHop),
             ("4,10.0.0.1,1", PathError::HalfHop),
+            ("4,10.0.0.1,1,0,2,10.0.0.2,1,0", PathError::TooManyHops),
             ("4,10.0.0.1,1,0,1,0", PathError::TooManyHops),
+            ("4,10.0.0.1,1,0,2", PathError::HalfHop),
             ("2,1", PathError::SerialPort),
             ("3,10.0.0.1", PathError::BadPort),
             ("0,1", PathError::BadPort),
@@ -215,7 +260,11 @@ mod tests {
             ("4,10.0.0.1:70000", PathError::BadAddress),
             ("4,a b", PathError::BadAddress),
             ("4,10.0.0.1,0,0", PathError::BadRoutePort),
+            ("4,10.0.0.1,65536,0", PathError::BadRoutePort),
             ("4,10.0.0.1,1,x", PathError::BadSlot),
+            ("4,10.0.0.1,1,256", PathError::BadSlot),
+            ("4,10.0.0.1,1,10.0.0.2", PathError::BadSlot),
+            ("4,10.0.0.1,2,10.0.0.256", PathError::BadSlot),
         ] {
             assert_eq!(text.parse::<TargetPath>(), Err(error), "{text}");
         }

@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::{String, ToString};
 
 use crate::table;
-use crate::wire::{ClassCode, LogicalKind, LogicalSegment, Reader, Segment};
+use crate::wire::{ClassCode, LogicalKind, LogicalSegment, PortSegment, Reader, Segment};
 
 use super::tree::Tree;
 use super::words::{ascii, hex, numbered};
@@ -65,8 +65,7 @@ pub(super) fn segments(tree: &mut Tree<'_>) -> Option<()> {
 fn describe(segment: Segment) -> (&'static str, String) {
     let LogicalSegment { kind, value } = match segment {
         Segment::Port(port) => {
-            let place = if port.port() == 1 { "backplane, slot" } else { "link" };
-            return ("port", format!("{}: {place} {}", port.port(), port.link()));
+            return ("port", format!("{}: {}", port.port(), link(&port)));
         }
         Segment::Logical(logical) => logical,
     };
@@ -77,6 +76,15 @@ fn describe(segment: Segment) -> (&'static str, String) {
         LogicalKind::Attribute => ("attribute", numbered(value, 4, None)),
         LogicalKind::Member => ("member", numbered(value, 4, None)),
         LogicalKind::ConnectionPoint => ("connection point", numbered(value, 4, None)),
+    }
+}
+
+fn link(port: &PortSegment) -> String {
+    match (port.slot(), port.address()) {
+        (Some(slot), _) if port.port() == 1 => format!("backplane, slot {slot}"),
+        (Some(slot), _) => format!("link {slot}"),
+        (None, Some(address)) => format!("address {address}"),
+        (None, None) => format!("address {}", hex(port.link())),
     }
 }
 

@@ -120,7 +120,7 @@ impl Checks {
                 self.warning(Field::Path, Rule::HostName);
             }
         }
-        if path.route.is_some() {
+        if !path.route.is_empty() {
             self.error(Field::Path, Rule::NotAvailable(Feature::Route));
             return None;
         }

@@ -275,11 +275,15 @@ const fn path_text(error: PathError) -> &'static str {
         PathError::Empty => "the path is empty; write 4,192.168.1.100",
         PathError::TooLong => "the path has more than 80 characters",
         PathError::HalfHop => "each hop is a port and an address, such as 4,192.168.1.100",
-        PathError::TooManyHops => "at most two hops",
+        PathError::TooManyHops => {
+            "at most two hops; a third has to leave the chassis, as in 4,192.168.1.100,1,3,2,192.168.1.20"
+        }
         PathError::SerialPort => "a serial port: only the Ethernet port 4 can be used",
         PathError::BadPort => "not a port of the controller: Ethernet is port 4, as in 4,192.168.1.100",
         PathError::BadAddress => "not an IP address or host name, such as 192.168.1.100",
-        PathError::BadRoutePort => "the second hop's port is 1 to 14; the backplane is 1",
-        PathError::BadSlot => "the second hop's slot is 0 to 255",
+        PathError::BadRoutePort => "the port of a further hop is 1 to 65535; the backplane is 1",
+        PathError::BadSlot => {
+            "the address of a further hop is a slot, 0 to 255, or an IP address (not on backplane port 1)"
+        }
     }
 }

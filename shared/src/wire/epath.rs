@@ -1,6 +1,10 @@
-//! Padded EPATH: logical segments in their smallest form, and one-byte port segments.
+//! Padded EPATH: logical segments in their smallest form, and port segments.
 //!
 //! Top three bits of a segment: 000 port, 001 logical. Source: OpENer `cipepath.h`, Omron W506 8-4.
+//!
+//! A port segment: `port and flags | [address length] | [UINT extended port] | link address | [00]`. Bits 3..0 are the
+//! port (15: an extended one follows), bit 4 says that the link address is longer than one byte. The length does not
+//! count the pad. Source: Wireshark packet-cip.c, OpENer cipepath.c.
 
 use alloc::vec::Vec;
 
@@ -13,7 +17,7 @@ pub struct Epath {
 }
 
 /// One segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Segment {
     /// Class, instance, attribute, member …
     Logical(LogicalSegment),
@@ -61,32 +65,95 @@ impl LogicalKind {
     }
 }
 
-/// A hop with a link address of one byte, such as backplane port 1, slot 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// A hop: a port of the device that the message has reached, and the address behind it, such as backplane port 1,
+/// slot 0, or Ethernet port 2, `192.168.1.100`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PortSegment {
-    port: u8,
-    link: u8,
+    port: u16,
+    link: Vec<u8>,
 }
 
 impl PortSegment {
-    /// Port 1..=14: 0 is reserved, 15 announces an extended port number.
-    pub const fn new(port: u8, link: u8) -> Option<Self> {
-        match port {
-            1..=14 => Some(Self { port, link }),
+    /// A hop to a slot or node. Port 0 is reserved.
+    pub fn new(port: u16, slot: u8) -> Option<Self> {
+        Self::with_address(port, &[slot])
+    }
+
+    /// A hop to a link address of 1 to 255 bytes; IP addresses are ASCII text. Port 0 is reserved.
+    pub fn with_address(port: u16, address: &[u8]) -> Option<Self> {
+        let valid = port != 0 && (1..=255).contains(&address.len());
+        valid.then(|| Self { port, link: address.to_vec() })
+    }
+
+    /// 1..=65535; 1 is the backplane. From 15 up it is encoded as an extended port.
+    pub const fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// Slot, node, or the bytes of a longer address.
+    pub fn link(&self) -> &[u8] {
+        &self.link
+    }
+
+    /// The slot or node, for an address of one byte.
+    pub fn slot(&self) -> Option<u8> {
+        match *self.link.as_slice() {
+            [slot] => Some(slot),
             _ => None,
         }
     }
 
-    /// 1..=14; 1 is the backplane.
-    pub const fn port(self) -> u8 {
-        self.port
+    /// The address as text, if it is longer than one byte and ASCII.
+    pub fn address(&self) -> Option<&str> {
+        let text = core::str::from_utf8(&self.link).ok()?;
+        (text.len() > 1 && text.bytes().all(|byte| byte.is_ascii_graphic())).then_some(text)
     }
 
-    /// Slot or node.
-    pub const fn link(self) -> u8 {
-        self.link
+    fn read(byte: u8, reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let length = if byte & LONG_ADDRESS == 0 { 1 } else { usize::from(reader.u8()?) };
+        let empty = reader.error(DecodeErrorKind::Unexpected { field: "link address length", found: 0 });
+        if length == 0 {
+            return Err(empty);
+        }
+        let port = match byte & PORT {
+            EXTENDED_PORT => {
+                let zero = reader.error(DecodeErrorKind::Unexpected { field: "extended port", found: 0 });
+                Some(reader.u16()?).filter(|port| *port != 0).ok_or(zero)?
+            }
+            port => port.into(),
+        };
+        let link = reader.take(length)?.to_vec();
+        if byte & LONG_ADDRESS != 0 && !length.is_multiple_of(2) {
+            reader.u8()?;
+        }
+        Ok(Self { port, link })
+    }
+
+    fn encode(&self, out: &mut Vec<u8>) {
+        let (port, extended) = match u8::try_from(self.port) {
+            Ok(port @ 1..EXTENDED_PORT) => (port, None),
+            _ => (EXTENDED_PORT, Some(self.port)),
+        };
+        let long = self.link.len() > 1;
+        out.push(if long { port | LONG_ADDRESS } else { port });
+        // `with_address` has refused what is over 255 bytes.
+        out.extend(long.then(|| u8::try_from(self.link.len()).unwrap_or(u8::MAX)));
+        out.extend(extended.into_iter().flat_map(u16::to_le_bytes));
+        out.extend_from_slice(&self.link);
+        if long && !self.link.len().is_multiple_of(2) {
+            out.push(0);
+        }
     }
 }
+
+/// Bits 3..0 of a port segment.
+const PORT: u8 = 0x0F;
+
+/// The port number follows as a UINT.
+const EXTENDED_PORT: u8 = 15;
+
+/// Bit 4: the link address is longer than one byte, its length follows.
+const LONG_ADDRESS: u8 = 0x10;
 
 impl Epath {
     /// Class and instance.
@@ -106,6 +173,18 @@ impl Epath {
     pub fn hop(mut self, port: PortSegment) -> Self {
         self.segments.push(Segment::Port(port));
         self
+    }
+
+    /// Adds everything of another path.
+    #[must_use]
+    pub fn join(mut self, other: &Self) -> Self {
+        self.segments.extend_from_slice(&other.segments);
+        self
+    }
+
+    /// Whether there is no segment.
+    pub const fn is_empty(&self) -> bool {
+        self.segments.is_empty()
     }
 
     /// The segments in order.
@@ -153,8 +232,8 @@ impl Segment {
         let unexpected =
             |found: u8| start.error(DecodeErrorKind::Unexpected { field: "segment", found: found.into() });
         let byte = reader.u8()?;
-        if let 0x01..=0x0E = byte {
-            return Ok(Self::Port(PortSegment { port: byte, link: reader.u8()? }));
+        if byte & !(PORT | LONG_ADDRESS) == 0 && byte & PORT != 0 {
+            return PortSegment::read(byte, reader).map(Self::Port);
         }
         let kind = LogicalKind::ALL.into_iter().find(|kind| kind.code() == byte & 0b1111_1100);
         let kind = kind.ok_or_else(|| unexpected(byte))?;
@@ -173,9 +252,9 @@ impl Segment {
         Ok(Self::Logical(LogicalSegment { kind, value }))
     }
 
-    fn encode(self, out: &mut Vec<u8>) {
-        match self {
-            Self::Port(PortSegment { port, link }) => out.extend_from_slice(&[port, link]),
+    fn encode(&self, out: &mut Vec<u8>) {
+        match *self {
+            Self::Port(ref port) => port.encode(out),
             Self::Logical(LogicalSegment { kind, value }) => {
                 let [b0, b1, b2, b3] = value.to_le_bytes();
                 match value {
@@ -220,7 +299,40 @@ mod tests {
         let path = Epath::default().hop(PortSegment::new(1, 0).unwrap());
         assert_eq!(path.bytes(), hex!("01 00"));
         assert_eq!(Epath::decode(&hex!("01 00")), Ok(path));
-        assert_eq!((PortSegment::new(0, 0), PortSegment::new(15, 0)), (None, None));
+        assert_eq!((PortSegment::new(0, 0), PortSegment::with_address(1, &[])), (None, None));
+    }
+
+    #[test]
+    fn a_link_address_of_text_is_padded_and_its_length_does_not_count_the_pad() {
+        // Wireshark packet-cip.c; libplctag issue 434 has the same form with port 0x12
+        let odd = Epath::default().hop(PortSegment::with_address(2, b"192.168.1.100").unwrap());
+        assert_eq!(odd.bytes(), hex!("12 0D 31 39 32 2E 31 36 38 2E 31 2E 31 30 30 00"));
+        let even = Epath::default().hop(PortSegment::with_address(2, b"192.168.1.55").unwrap());
+        assert_eq!(even.bytes(), hex!("12 0C 31 39 32 2E 31 36 38 2E 31 2E 35 35"));
+        for path in [odd, even] {
+            assert_eq!(Epath::decode(&path.bytes()), Ok(path));
+        }
+    }
+
+    #[test]
+    fn a_port_from_15_up_is_an_extended_one() {
+        // OpENer cipepath.c: the extended port follows the length byte, if there is one
+        let slot = Epath::default().hop(PortSegment::new(18, 3).unwrap());
+        assert_eq!(slot.bytes(), hex!("0F 12 00 03"));
+        let address = Epath::default().hop(PortSegment::with_address(0x0115, b"10.0.0.1").unwrap());
+        assert_eq!(address.bytes(), hex!("1F 08 15 01 31 30 2E 30 2E 30 2E 31"));
+        let fifteen = Epath::default().hop(PortSegment::new(15, 0).unwrap());
+        assert_eq!(fifteen.bytes(), hex!("0F 0F 00 00"));
+        for path in [slot, address, fifteen] {
+            assert_eq!(Epath::decode(&path.bytes()), Ok(path));
+        }
+    }
+
+    #[test]
+    fn a_hop_that_cannot_be_is_named_with_its_byte() {
+        for (bytes, at) in [(&hex!("12 00")[..], 2), (&hex!("0F 00 00 01"), 1), (&hex!("12 05 31"), 3)] {
+            assert_eq!(Epath::decode(bytes).unwrap_err().at, at, "{bytes:02x?}");
+        }
     }
 
     #[test]

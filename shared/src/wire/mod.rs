@@ -13,20 +13,27 @@ mod open;
 
 mod class;
 mod common_packet;
+mod connection_manager;
 mod cursor;
 mod deframer;
 mod encapsulation;
 mod epath;
+mod forward_close;
+mod forward_open;
 mod list_identity;
 mod list_services;
 mod message_router;
+mod request_timeout;
 mod send_rr_data;
+mod send_unit_data;
 mod service;
 mod status;
+mod unconnected_send;
 mod value;
 
 pub use self::class::ClassCode;
 pub use self::common_packet::{CommonPacketFormat, Item, ItemType, Items};
+pub use self::connection_manager::{ConnectionTriad, RouterRefusal};
 pub use self::cursor::{DecodeError, DecodeErrorKind, Reader, TooLong};
 pub use self::deframer::Deframer;
 pub use self::encapsulation::{
@@ -34,10 +41,17 @@ pub use self::encapsulation::{
     RegisterSession, SenderContext, SessionHandle,
 };
 pub use self::epath::{Epath, LogicalKind, LogicalSegment, PortSegment, Segment};
+pub use self::forward_close::{ForwardClose, ForwardCloseReply};
+pub use self::forward_open::{
+    ConnectionParameters, ForwardOpen, ForwardOpenReply, MAX_CLASSIC_SIZE, TimeoutMultiplier,
+};
 pub use self::list_identity::{ListIdentityItem, SocketAddress};
 pub use self::list_services::ListServicesItem;
 pub use self::message_router::{AdditionalStatus, MessageRouterReply, MessageRouterRequest};
+pub use self::request_timeout::RequestTimeout;
 pub use self::send_rr_data::{MAX_MESSAGE, SendRrData, UnconnectedMessage};
+pub use self::send_unit_data::{ConnectedItem, ConnectedMessage, ConnectionId, MAX_CONNECTED_MESSAGE};
 pub use self::service::ServiceCode;
 pub use self::status::GeneralStatus;
+pub use self::unconnected_send::UnconnectedSend;
 pub use self::value::{CipType, CipValue, ShortString};

@@ -16,8 +16,18 @@ open_enum! {
         Reset = 0x05,
         /// One attribute.
         GetAttributeSingle = 0x0E,
+        /// Several requests in one, to the Message Router.
+        MultipleServicePacket = 0x0A,
         /// One attribute, written.
         SetAttributeSingle = 0x10,
+        /// Connection Manager: ends a connection.
+        ForwardClose = 0x4E,
+        /// Connection Manager: hands a message on along a route.
+        UnconnectedSend = 0x52,
+        /// Connection Manager: opens a connection of at most 511 bytes.
+        ForwardOpen = 0x54,
+        /// Connection Manager: opens a connection of at most 65,535 bytes.
+        LargeForwardOpen = 0x5B,
     }
 }
 
