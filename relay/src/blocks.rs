@@ -9,6 +9,7 @@ use cipdeck_shared::engine::BlockView;
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use tokio::sync::Mutex;
 
+use crate::capture;
 use crate::draft::{Draft, normalised};
 use crate::error::ApiError;
 use crate::hub::Hub;
@@ -70,6 +71,14 @@ impl Blocks {
     /// The last exchanges, the newest last.
     pub(crate) fn exchanges(&self, id: BlockId) -> Result<Vec<ExchangeView>, ApiError> {
         self.0.hub.exchanges(id).ok_or_else(|| ApiError::no_block(id))
+    }
+
+    /// The last exchanges as a pcapng file, and what to call it.
+    pub(crate) fn capture(&self, id: BlockId) -> Result<(String, Vec<u8>), ApiError> {
+        let name = self.block(id)?.config.name;
+        let frames = self.0.hub.frames(id).ok_or_else(|| ApiError::no_block(id))?;
+        let file = capture::of_exchanges(&frames).map_err(|error| ApiError::Internal(error.to_string()))?;
+        Ok((capture::file_name(&name, id), file))
     }
 
     /// Stores a new block.

@@ -3,6 +3,7 @@
 //! It moves bytes and time and decides nothing about the protocol. [`run`] is the whole server; [`cli`] is everything
 //! that a person types.
 
+pub mod capture;
 pub mod cli;
 pub mod settings;
 

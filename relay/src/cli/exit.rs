@@ -41,6 +41,9 @@ impl Exit {
         Self { code, message: None }
     }
 
+    /// What was asked for beside the message failed. What is to be said has been said.
+    pub(crate) const INCOMPLETE: Self = Self { code: 1, message: None };
+
     /// Error findings. What is to be said has been said.
     pub(crate) const FINDINGS: Self = Self { code: 2, message: None };
 

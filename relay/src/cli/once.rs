@@ -1,5 +1,6 @@
 //! Runs one block from here, once or several times, with the runner that the relay uses.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use cipdeck_shared::api::{BlockStatus, LastSuccess};
@@ -10,7 +11,8 @@ use clap::Args;
 
 use super::report::{self, Report};
 use super::{Exit, say};
-use crate::runner::{Ended, Observer, Refused, Runner};
+use crate::capture::Recorder;
+use crate::runner::{Ended, Observer, Refused, Runner, Tap, Trace};
 use crate::{shutdown, wall_clock};
 
 /// How often, and how it is printed.
@@ -22,6 +24,10 @@ pub(super) struct Mode {
     /// For machines: block status, request, response and decoded values, one JSON object a line
     #[arg(long)]
     json: bool,
+    /// Record everything that goes over the sockets, for Wireshark (pcapng). A file of that name is replaced. The
+    /// bytes and the times are the real ones; the TCP packets around them are made up
+    #[arg(long, value_name = "FILE")]
+    pcap: Option<PathBuf>,
 }
 
 /// The only block there is.
@@ -40,7 +46,11 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
         }
         return Exit::FINDINGS;
     };
-    let runner = Runner::start(Arc::new(Nobody));
+    let recorder = match mode.pcap.as_deref().map(Recorder::create).transpose() {
+        Ok(recorder) => recorder.map(Arc::new),
+        Err(error) => return Exit::internal(&error),
+    };
+    let runner = Runner::tapped(Arc::new(Nobody), recorder.clone().map(|tap| tap as Arc<dyn Tap>));
     runner.put(BLOCK, REVISION, Ok(plan));
     let exit = tokio::select! {
         exit = repeat(&runner, config, mode) => exit,
@@ -48,7 +58,13 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
         () = shutdown::requested() => Exit::interrupted(&"interrupted; what had been sent may have been carried out"),
     };
     runner.stop().await;
-    exit
+    match recorder.map_or(Ok(()), |recorder| recorder.complete()) {
+        Ok(()) => exit,
+        Err(error) => {
+            eprintln!("cipdeck: {error}");
+            if exit == Exit::SUCCESS { Exit::INCOMPLETE } else { exit }
+        }
+    }
 }
 
 async fn repeat(runner: &Runner, config: &MsgCipGeneric, mode: &Mode) -> Exit {
@@ -89,7 +105,7 @@ struct Nobody;
 impl Observer for Nobody {
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
-    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange) -> BlockStatus {
+    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange, _: Option<Trace>) -> BlockStatus {
         let at = wall_clock::now();
         let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
         status.last = status.q.then(|| LastSuccess::of(&status, at));

@@ -63,3 +63,13 @@ pub(super) async fn exchange(
 ) -> Result<Answer<Vec<ExchangeView>>, ApiError> {
     app.blocks.exchanges(id).map(Answer)
 }
+
+/// `GET blocks/{id}/exchange.pcapng`
+pub(super) async fn capture(State(app): State<App>, Id(id): Id) -> Result<impl IntoResponse, ApiError> {
+    let (name, file) = app.blocks.capture(id)?;
+    let headers = [
+        (header::CONTENT_TYPE, "application/x-pcapng".to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
+    ];
+    Ok((headers, file))
+}

@@ -30,6 +30,7 @@ pub(crate) fn router(app: App) -> Router {
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
         .route("/blocks/{id}/status", get(blocks::status))
         .route("/blocks/{id}/exchange", get(blocks::exchange))
+        .route("/blocks/{id}/exchange.pcapng", get(blocks::capture))
         .route("/blocks/{id}/in", post(commands::set_in))
         .route("/blocks/{id}/run", post(commands::run))
         .route("/blocks/{id}/cancel", post(commands::cancel))

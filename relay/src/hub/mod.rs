@@ -14,7 +14,8 @@ use tokio::sync::watch;
 
 pub(crate) use self::changes::{Cursor, Update};
 use self::row::Row;
-use crate::runner::{Observer, lock};
+use crate::capture::Carried;
+use crate::runner::{Observer, Trace, lock};
 use crate::wall_clock;
 
 /// The newest state of all blocks.
@@ -95,6 +96,11 @@ impl Hub {
         lock(&self.latest).rows.get(&id).map(Row::exchanges)
     }
 
+    /// The frames of the last exchanges of a block, the newest last.
+    pub(crate) fn frames(&self, id: BlockId) -> Option<Vec<Carried>> {
+        lock(&self.latest).rows.get(&id).map(Row::frames)
+    }
+
     /// Changes whenever something has changed.
     pub(crate) fn watch(&self) -> watch::Receiver<u64> {
         self.version.subscribe()
@@ -138,13 +144,19 @@ impl Observer for Hub {
         });
     }
 
-    fn finished(&self, block: BlockId, view: &BlockView, exchange: &Exchange) -> BlockStatus {
+    fn finished(
+        &self,
+        block: BlockId,
+        view: &BlockView,
+        exchange: &Exchange,
+        trace: Option<Trace>,
+    ) -> BlockStatus {
         let mut status = BlockStatus::new(block, view, Some(wall_clock::now()), None);
         self.change(|latest| {
             if latest.rows.contains_key(&block) {
                 let version = latest.next(block);
                 if let Some(row) = latest.rows.get_mut(&block) {
-                    row.finished(view, exchange.clone(), version);
+                    row.finished(view, exchange.clone(), trace, version);
                     status = row.with(block, view);
                 }
             }

@@ -1,11 +1,14 @@
 //! One block as viewers see it.
 
 use std::collections::VecDeque;
+use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
 use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
 use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
 
+use crate::capture::Carried;
+use crate::runner::Trace;
 use crate::wall_clock;
 
 /// Exchanges that are kept of each block.
@@ -23,7 +26,17 @@ pub(super) struct Row {
     edges: VecDeque<(u64, StatusBits)>,
     /// All edges there ever were, with the dropped ones.
     edge_count: u64,
-    exchanges: VecDeque<(String, Exchange)>,
+    exchanges: VecDeque<Kept>,
+}
+
+/// One message that has ended.
+#[derive(Debug)]
+struct Kept {
+    at: String,
+    ended: SystemTime,
+    exchange: Exchange,
+    /// Where it went, if it went anywhere.
+    trace: Option<Trace>,
 }
 
 impl Row {
@@ -64,7 +77,13 @@ impl Row {
         self.version = version;
     }
 
-    pub(super) fn finished(&mut self, view: &BlockView, exchange: Exchange, version: u64) {
+    pub(super) fn finished(
+        &mut self,
+        view: &BlockView,
+        exchange: Exchange,
+        trace: Option<Trace>,
+        version: u64,
+    ) {
         let at = self.status.at.clone().unwrap_or_else(wall_clock::now);
         if view.q {
             self.status.last = Some(LastSuccess::of(&self.status, at.clone()));
@@ -72,7 +91,7 @@ impl Row {
         if self.exchanges.len() == MAX_EXCHANGES {
             self.exchanges.pop_front();
         }
-        self.exchanges.push_back((at, exchange));
+        self.exchanges.push_back(Kept { at, ended: SystemTime::now(), exchange, trace });
         self.version = version;
     }
 
@@ -95,7 +114,19 @@ impl Row {
     }
 
     pub(super) fn exchanges(&self) -> Vec<ExchangeView> {
-        self.exchanges.iter().map(|(at, exchange)| ExchangeView::new(at.clone(), exchange)).collect()
+        self.exchanges.iter().map(|kept| ExchangeView::new(kept.at.clone(), &kept.exchange)).collect()
+    }
+
+    pub(super) fn frames(&self) -> Vec<Carried> {
+        let carried = |kept: &Kept| {
+            Some(Carried {
+                trace: kept.trace?,
+                ended: kept.ended,
+                request: kept.exchange.request_frame.clone(),
+                response: kept.exchange.response_frame.clone(),
+            })
+        };
+        self.exchanges.iter().filter_map(carried).collect()
     }
 
     /// A message begins with EN alone, at its trigger.

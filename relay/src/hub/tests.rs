@@ -22,7 +22,7 @@ fn edges(hub: &Hub, block: BlockId, edges: &[(u64, u16)]) {
 fn succeed(hub: &Hub, block: BlockId, data: u8) {
     let view = BlockView { q: true, res_data: vec![data], ..BlockView::default() };
     hub.changed(block, &view);
-    hub.finished(block, &view, &Exchange { request: vec![data], ..Exchange::default() });
+    hub.finished(block, &view, &Exchange { request: vec![data], ..Exchange::default() }, None);
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn the_last_success_survives_a_failure_and_sixteen_exchanges_are_kept() {
     }
     let failed = BlockView { phase: Phase::Failed, ..BlockView::default() };
     hub.changed(B1, &failed);
-    let status = hub.finished(B1, &failed, &Exchange::default());
+    let status = hub.finished(B1, &failed, &Exchange::default(), None);
     assert_eq!((status.res_data.as_str(), status.last.unwrap().res_data.as_str()), ("", "14"));
     let exchanges = hub.exchanges(B1).unwrap();
     assert_eq!((exchanges.len(), exchanges[0].request.as_str()), (16, "06"));

@@ -5,12 +5,13 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cipdeck_shared::config::{Endpoint, Host};
-use cipdeck_shared::engine::ConnectError;
+use cipdeck_shared::engine::{ConnectError, LinkId};
 use cipdeck_shared::sim::Device;
 use tokio::io::DuplexStream;
 use tokio::net::TcpStream;
 
 use super::clock::Clock;
+use super::trail::Ends;
 use crate::simulate;
 
 /// Bytes between the engine and the built-in device.
@@ -42,6 +43,13 @@ pub(super) fn built_in(device: Arc<Mutex<Device>>, clock: Clock) -> DuplexStream
         let _ = simulate::answer_stream(theirs, &device, clock).await;
     });
     ours
+}
+
+/// Addresses for a connection that has none, from the block that is reserved for documentation (RFC 5737). Each
+/// connection has a port of its own, as the ports of the system would be.
+pub(super) fn built_in_ends(link: LinkId) -> Ends {
+    let port = u16::try_from(link.0 % 16_384).unwrap_or_default() + 49_152;
+    Ends { local: ([192, 0, 2, 1], port).into(), peer: ([192, 0, 2, 2], 44_818).into() }
 }
 
 /// A device of the relay's own.

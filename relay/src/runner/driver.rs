@@ -10,6 +10,8 @@ use tokio::sync::Notify;
 pub(super) trait Machine {
     /// Appends what is to be written now.
     fn poll_transmit(&self, link: LinkId, out: &mut Vec<u8>) -> bool;
+    /// Hears what has been written.
+    fn written(&self, link: LinkId, bytes: &[u8]);
     /// Takes what was read.
     fn handle_input(&self, link: LinkId, bytes: &[u8]);
 }
@@ -31,6 +33,7 @@ where
             tracing::trace!(link = link.0, bytes = ?out, "write");
             io.write_all(&out).await?;
             io.flush().await?;
+            machine.written(link, &out);
             out.clear();
         }
         tokio::select! {
@@ -62,6 +65,8 @@ mod tests {
             out.append(&mut self.0.lock().unwrap());
             !out.is_empty()
         }
+
+        fn written(&self, _: LinkId, _: &[u8]) {}
 
         fn handle_input(&self, _: LinkId, bytes: &[u8]) {
             self.0.lock().unwrap().extend(bytes.iter().map(|byte| byte + 1));

@@ -1,15 +1,17 @@
 //! One connection: its task, and the handle by which the runner reaches it.
 
 use std::future::Future;
+use std::io;
 use std::sync::Arc;
 
 use cipdeck_shared::config::Target;
 use cipdeck_shared::engine::LinkId;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::Notify;
 use tokio_util::sync::{CancellationToken, DropGuard};
 
-use super::driver::{self, Machine};
-use super::{Inner, connect};
+use super::trail::{Carrier, Ends};
+use super::{Inner, connect, driver};
 
 /// The runner's end. Dropping it drops the socket.
 #[derive(Debug)]
@@ -45,14 +47,13 @@ async fn serve(
         match &target {
             Target::BuiltIn => {
                 let stream = connect::built_in(Arc::clone(&inner.device), inner.clock);
-                inner.with(|state, now| state.engine.connected(link, now));
-                driver::drive(stream, link, &inner, &wake).await
+                carry(stream, link, connect::built_in_ends(link), &inner, &wake).await
             }
             Target::Network(endpoint) => match connect::open(endpoint).await {
                 Ok(stream) => {
                     tracing::debug!(target.address = %endpoint, link = link.0, "connected");
-                    inner.with(|state, now| state.engine.connected(link, now));
-                    driver::drive(stream, link, &inner, &wake).await
+                    let ends = Ends { local: stream.local_addr()?, peer: stream.peer_addr()? };
+                    carry(stream, link, ends, &inner, &wake).await
                 }
                 Err((error, detail)) => {
                     tracing::debug!(target.address = %endpoint, link = link.0, %detail, "not connected");
@@ -67,6 +68,17 @@ async fn serve(
     }
 }
 
+/// Carries bytes until the other side closes.
+async fn carry<S>(stream: S, link: LinkId, ends: Ends, inner: &Arc<Inner>, wake: &Notify) -> io::Result<()>
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let carrier = Carrier::open(link, ends, inner);
+    let ended = driver::drive(stream, link, &carrier, wake).await;
+    carrier.hung_up();
+    ended
+}
+
 struct Farewell {
     link: LinkId,
     inner: Arc<Inner>,
@@ -78,15 +90,5 @@ impl Drop for Farewell {
             state.engine.closed(self.link, now);
             state.sockets.remove(&self.link)
         });
-    }
-}
-
-impl Machine for Arc<Inner> {
-    fn poll_transmit(&self, link: LinkId, out: &mut Vec<u8>) -> bool {
-        self.with(|state, now| state.engine.poll_transmit(link, out, now))
-    }
-
-    fn handle_input(&self, link: LinkId, bytes: &[u8]) {
-        self.with(|state, now| state.engine.handle_input(link, bytes, now));
     }
 }

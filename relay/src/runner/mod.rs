@@ -8,6 +8,7 @@ mod connect;
 mod driver;
 mod link;
 mod timer;
+mod trail;
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex};
@@ -26,14 +27,24 @@ use tokio_util::task::TaskTracker;
 pub(crate) use self::clock::Clock;
 pub(crate) use self::connect::lock;
 use self::link::Socket;
+use self::trail::Trail;
+pub use self::trail::{Direction, Ends};
+pub(crate) use self::trail::{Tap, Trace};
 use crate::permit::{self, Denied, Grants};
 
 /// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
 pub(crate) trait Observer: Send + Sync + 'static {
     /// A block looks different; `view.edges` are the new edges only.
     fn changed(&self, block: BlockId, view: &BlockView);
-    /// A message has ended. Returns the status that its run is answered with.
-    fn finished(&self, block: BlockId, view: &BlockView, exchange: &Exchange) -> BlockStatus;
+    /// A message has ended. `trace` says where it went, if it was permitted to go anywhere. Returns the status that
+    /// its run is answered with.
+    fn finished(
+        &self,
+        block: BlockId,
+        view: &BlockView,
+        exchange: &Exchange,
+        trace: Option<Trace>,
+    ) -> BlockStatus;
 }
 
 /// How a run ended: with DN or ER.
@@ -73,6 +84,8 @@ struct Inner {
     state: Mutex<State>,
     observer: Arc<dyn Observer>,
     gate: Gate,
+    /// Records everything that goes over the sockets.
+    tap: Option<Arc<dyn Tap>>,
     clock: Clock,
     device: Arc<Mutex<Device>>,
     /// When the engine wants to be called.
@@ -89,6 +102,9 @@ struct State {
     engine: Engine,
     grants: Grants,
     sockets: BTreeMap<LinkId, Socket>,
+    trails: BTreeMap<LinkId, Arc<Trail>>,
+    /// The connection that carries a block's message.
+    carried: HashMap<BlockId, Arc<Trail>>,
     runs: HashMap<(BlockId, u64), oneshot::Sender<Ended>>,
     stopping: bool,
 }
@@ -99,14 +115,20 @@ const FAREWELL: Duration = Duration::from_secs(1);
 impl Runner {
     /// Starts without blocks.
     pub(crate) fn start(observer: Arc<dyn Observer>) -> Self {
-        Self::with_gate(observer, permit::permit)
+        Self::with_gate(observer, permit::permit, None)
     }
 
-    fn with_gate(observer: Arc<dyn Observer>, gate: Gate) -> Self {
+    /// Starts without blocks; the tap hears every byte.
+    pub(crate) fn tapped(observer: Arc<dyn Observer>, tap: Option<Arc<dyn Tap>>) -> Self {
+        Self::with_gate(observer, permit::permit, tap)
+    }
+
+    fn with_gate(observer: Arc<dyn Observer>, gate: Gate, tap: Option<Arc<dyn Tap>>) -> Self {
         let inner = Arc::new(Inner {
             state: Mutex::default(),
             observer,
             gate,
+            tap,
             clock: Clock::start(),
             device: connect::built_in_device(),
             wake: watch::Sender::new(None),
@@ -232,7 +254,8 @@ impl Inner {
             Event::Finished { block, shot, view, exchange } => {
                 let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
                 tracing::debug!(%block, shot, error_id, sub_error_id, elapsed_us = view.elapsed_us, "ended");
-                let status = self.observer.finished(block, &view, &exchange);
+                let trace = state.carried.remove(&block).map(|trail| trail.trace());
+                let status = self.observer.finished(block, &view, &exchange, trace);
                 if let Some(run) = state.runs.remove(&(block, shot)) {
                     // Nobody may wait any more.
                     let _ = run.send(Ended { status, exchange: *exchange });
@@ -251,6 +274,12 @@ impl Inner {
         let verdict = (self.gate)(&state.grants, wants.block, wants.revision);
         if let Err(denied) = verdict {
             tracing::warn!(block = %wants.block, shot = wants.shot, revision = wants.revision, %denied, "not sent");
+        }
+        if verdict.is_ok()
+            && let Some(trail) = state.trails.get(&wants.link)
+        {
+            trail.begin();
+            state.carried.insert(wants.block, Arc::clone(trail));
         }
         state.engine.permit(wants, verdict.is_ok(), now);
     }

@@ -12,7 +12,7 @@ struct Nobody;
 impl Observer for Nobody {
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
-    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange) -> BlockStatus {
+    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange, _: Option<Trace>) -> BlockStatus {
         BlockStatus::new(block, view, None, None::<LastSuccess>)
     }
 }
@@ -71,7 +71,7 @@ async fn a_write_that_nobody_confirmed_never_reaches_the_device() {
 
 #[tokio::test]
 async fn without_the_gate_the_same_write_would_reach_the_device() {
-    let runner = Runner::with_gate(Arc::new(Nobody), |_, _, _| Ok(()));
+    let runner = Runner::with_gate(Arc::new(Nobody), |_, _, _| Ok(()), None);
     let (before, status) = write_past_the_command_check(&runner).await;
     assert_eq!(status.phase, Phase::Done);
     assert_ne!(output(&runner).await, before);
@@ -179,10 +179,14 @@ async fn stopping_unregisters_the_session() {
 async fn a_panic_in_one_connection_is_survived() {
     use std::sync::atomic::{AtomicBool, Ordering};
     static HAS_PANICKED: AtomicBool = AtomicBool::new(false);
-    let runner = Runner::with_gate(Arc::new(Nobody), |grants, block, revision| {
-        assert!(HAS_PANICKED.swap(true, Ordering::SeqCst), "on purpose, once");
-        permit::permit(grants, block, revision)
-    });
+    let runner = Runner::with_gate(
+        Arc::new(Nobody),
+        |grants, block, revision| {
+            assert!(HAS_PANICKED.swap(true, Ordering::SeqCst), "on purpose, once");
+            permit::permit(grants, block, revision)
+        },
+        None,
+    );
     runner.put(BLOCK, 1, Ok(name_of_the_demo_device()));
     assert!(runner.run(BLOCK, None).await.unwrap().status.q);
     assert!(HAS_PANICKED.load(Ordering::SeqCst));
