@@ -28,6 +28,8 @@ pub(super) fn list_reply(device: &Device, header: Header) -> Option<Vec<u8>> {
         _ => return None,
     }
     let mut out = Vec::new();
-    Encapsulation::new(header.reply(EncapsulationStatus::Success), &data).ok()?.encode(&mut out);
+    Encapsulation::new(device.reply_header(header, EncapsulationStatus::Success), &data)
+        .ok()?
+        .encode(&mut out);
     Some(out)
 }

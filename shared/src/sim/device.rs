@@ -1,143 +1,190 @@
-//! The device: which object answers, and what.
+//! The device at the end of the TCP connections, with everything around it.
 
 use alloc::vec::Vec;
 
-use crate::engine::time::{Instant, Millis};
+use crate::engine::time::Instant;
 use crate::wire::{
-    ClassCode, Epath, GeneralStatus, LogicalKind, MessageRouterReply, Reader, Segment, ServiceCode,
-    SessionHandle, SocketAddress,
+    ClassCode, ConnectedItem, ConnectionId, EncapsulationStatus, GeneralStatus, Header,
+    MAX_CONNECTED_MESSAGE, MAX_MESSAGE, SenderContext, ServiceCode, SessionHandle,
 };
 
-use super::assembly::{self, ASSEMBLY_SIZE, INPUT_ASSEMBLY, OUTPUT_ASSEMBLY};
+use super::config::{Quirk, SimConfig};
+use super::connections::Connections;
+use super::counters::{Count, Counters};
 use super::fault::Fault;
-use super::identity::SimIdentity;
-use super::network;
-use super::parameter::{self, Parameters};
+use super::module::SimModule;
+use super::objects::Objects;
+use super::request::{Answer, Request, service_of};
 
-/// What a simulated device is like.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SimConfig {
-    /// Who it says it is.
-    pub identity: SimIdentity,
-    /// Where it says it is: in ListIdentity and in TCP/IP attribute 5.
-    pub address: SocketAddress,
-    /// From a `SendRRData` request to its reply; requests are worked on one after the other.
-    pub delay: Millis,
-    /// The first reply suffers the first, and so on, round and round. Empty: all is well.
-    pub faults: Vec<Fault>,
-}
-
-impl Default for SimConfig {
-    fn default() -> Self {
-        Self {
-            identity: SimIdentity::default(),
-            address: SocketAddress::v4([127, 0, 0, 1], 44_818),
-            delay: Millis(0),
-            faults: Vec::new(),
-        }
-    }
-}
-
-/// The objects of a simulated device. See the [module](super) for what is in it.
-#[derive(Clone, Debug, Default)]
+/// A simulated device, its chassis, and the connections to all of it. See the [module](super) for what is in it.
+#[derive(Clone, Debug)]
 pub struct Device {
     pub(super) config: SimConfig,
-    output: [u8; ASSEMBLY_SIZE],
-    parameters: Parameters,
+    /// The device itself first.
+    pub(super) modules: Vec<Objects>,
+    pub(super) connections: Connections,
+    pub(super) counters: Counters,
     last_session: u32,
     answered: usize,
 }
 
-/// An instance that is there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Object {
-    Identity,
-    /// Message Router and Connection Manager: there, but without anything that this device can do.
-    Silent,
-    Input,
-    Output,
-    Parameter(u32),
-    TcpIp,
-    EthernetLink,
+/// Index of the device itself among the modules.
+pub(super) const FRONT: usize = 0;
+
+/// Who asks, and how.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Caller {
+    pub(super) session: SessionHandle,
+    /// How many Unconnected_Sends are around the request.
+    pub(super) depth: u8,
+    /// Whether it came over a connection.
+    pub(super) connected: bool,
 }
 
-/// The attribute that holds the data of an assembly.
-const ASSEMBLY_DATA: u16 = 3;
+impl Caller {
+    /// The reply to what is wrapped could not be used: the connection would begin at the last router.
+    const fn may_open(self) -> bool {
+        self.depth == 0 && !self.connected
+    }
+}
 
-/// The attribute that holds the value of a DPI parameter.
-const PARAMETER_VALUE: u16 = 9;
+impl Default for Device {
+    fn default() -> Self {
+        Self::new(SimConfig::default())
+    }
+}
 
 impl Device {
     /// A device just switched on.
     pub fn new(config: SimConfig) -> Self {
-        Self { config, ..Self::default() }
+        let slot = Some(SimModule::OWN_SLOT);
+        let own = SimModule { slot, ip: Some(config.address.ip), identity: config.identity.clone() };
+        let modules = [own].into_iter().chain(config.modules.iter().cloned()).map(Objects::new).collect();
+        Self {
+            config,
+            modules,
+            connections: Connections::default(),
+            counters: Counters::default(),
+            last_session: 0,
+            answered: 0,
+        }
     }
 
-    /// Answers a message router request. Any bytes get an answer: what cannot be understood is refused.
+    /// Answers an unconnected message router request. Any bytes get an answer: what cannot be understood is refused.
     pub fn answer(&mut self, request: &[u8], now: Instant) -> Vec<u8> {
-        let service = ServiceCode(request.first().map_or(0, |byte| byte & !ServiceCode::REPLY));
-        let mut out = Vec::new();
-        match self.carry_out(request, now) {
-            Ok(data) => MessageRouterReply::success(service, &data).encode(&mut out),
-            Err(status) => MessageRouterReply::refusal(service, status).encode(&mut out),
-        }
-        out
+        self.unconnected(SessionHandle(0), request, None, now).message
     }
 
-    fn carry_out(&mut self, request: &[u8], now: Instant) -> Result<Vec<u8>, GeneralStatus> {
-        let request = Request::decode(request)?;
-        let object = find(request.class, request.instance)?;
-        let attribute = request.attribute;
-        match request.service {
-            ServiceCode::GetAttributesAll if object == Object::Identity => Ok(self.config.identity.all()),
-            ServiceCode::GetAttributeSingle if object != Object::Silent => {
-                self.read(object, attribute, now).ok_or(GeneralStatus::AttributeNotSupported)
-            }
-            ServiceCode::SetAttributeSingle if object != Object::Silent => {
-                let there = self.read(object, attribute, now).is_some();
-                if !there {
-                    return Err(GeneralStatus::AttributeNotSupported);
-                }
-                self.write(object, request.data).map(|()| Vec::new())
-            }
-            _ => Err(GeneralStatus::ServiceNotSupported),
+    /// What the device has done so far.
+    pub const fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// When a connection will have been silent for too long.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        self.connections.next_expiry()
+    }
+
+    /// Closes the connections that have been silent for too long. Requests do so, too; calling it late changes only
+    /// when [`Self::counters`] says so.
+    pub fn handle_timeout(&mut self, now: Instant) {
+        for connection in self.connections.expire(now) {
+            self.counters.timed_out += 1;
+            count(&mut self.modules, FRONT, connection.module, Count::Timeout);
         }
     }
 
-    fn read(&self, object: Object, attribute: u16, now: Instant) -> Option<Vec<u8>> {
-        match (object, attribute) {
-            (Object::Identity, _) => self.config.identity.read(attribute),
-            (Object::Input, ASSEMBLY_DATA) => Some(assembly::input(&self.output, now).to_vec()),
-            (Object::Output, ASSEMBLY_DATA) => Some(self.output.to_vec()),
-            (Object::Parameter(number), PARAMETER_VALUE) => self.parameters.read(number, now),
-            (Object::TcpIp, _) => network::tcp_ip(attribute, self.config.address.ip),
-            (Object::EthernetLink, _) => network::ethernet_link(attribute, self.config.identity.serial),
-            _ => None,
+    /// Answers a request of a session, or refuses it without looking.
+    pub(super) fn unconnected(
+        &mut self,
+        session: SessionHandle,
+        request: &[u8],
+        refuse: Option<GeneralStatus>,
+        now: Instant,
+    ) -> Answer {
+        self.handle_timeout(now);
+        self.counters.unconnected += u64::from(!opens_or_closes(request));
+        let service = service_of(request);
+        if let Some(status) = refuse {
+            return Answer::refusal(service, status);
         }
+        let answer = self.ask(FRONT, request, Caller { session, depth: 0, connected: false }, now);
+        within(MAX_MESSAGE, service, answer)
     }
 
-    /// Writes the attribute that [`Self::read`] has found.
-    fn write(&mut self, object: Object, data: &[u8]) -> Result<(), GeneralStatus> {
-        match object {
-            Object::Output => {
-                self.output = <[u8; ASSEMBLY_SIZE]>::try_from(data).map_err(|_| {
-                    if data.len() < ASSEMBLY_SIZE {
-                        GeneralStatus::NotEnoughData
-                    } else {
-                        GeneralStatus::TooMuchData
-                    }
-                })?;
-                Ok(())
-            }
-            Object::Parameter(number) => self.parameters.write(number, data),
-            _ => Err(GeneralStatus::AttributeNotSettable),
+    /// Answers a connected request; with the id for the reply. None: there is no such connection.
+    pub(super) fn connected(
+        &mut self,
+        session: SessionHandle,
+        item: &ConnectedItem<'_>,
+        refuse: Option<GeneralStatus>,
+        now: Instant,
+    ) -> Option<(ConnectionId, Answer)> {
+        let connection = self.connections.by_id(session, item.id)?;
+        connection.touch(now);
+        let (t_o_id, module) = (connection.t_o_id, connection.module);
+        let [o_t_max, t_o_max] = [connection.o_t_size, connection.t_o_size].map(message_size);
+        if let Some((_, answer)) = connection.last.as_ref().filter(|last| last.0 == item.sequence) {
+            self.counters.repeated += 1;
+            return Some((t_o_id, answer.clone()));
         }
+        self.counters.connected += 1;
+        let service = service_of(item.message);
+        let too_long = (item.message.len() > o_t_max).then_some(GeneralStatus::TooMuchData);
+        let answer = match refuse.or(too_long) {
+            Some(status) => Answer::refusal(service, status),
+            None => self.ask(module, item.message, Caller { session, depth: 0, connected: true }, now),
+        };
+        let answer = within(t_o_max, service, answer);
+        if let Some(connection) = self.connections.by_id(session, item.id) {
+            connection.last = Some((item.sequence, answer.clone()));
+        }
+        Some((t_o_id, answer))
+    }
+
+    /// Whether [`Self::connected`] has an answer; counted if it has none.
+    pub(super) fn is_connected(&mut self, session: SessionHandle, id: ConnectionId, now: Instant) -> bool {
+        self.handle_timeout(now);
+        let there = self.connections.by_id(session, id).is_some();
+        self.counters.dropped += u64::from(!there);
+        there
+    }
+
+    /// Asks one module.
+    pub(super) fn ask(&mut self, module: usize, request: &[u8], caller: Caller, now: Instant) -> Answer {
+        let service = service_of(request);
+        let request = match Request::decode(request) {
+            Ok(request) => request,
+            Err(status) => return Answer::refusal(service, status),
+        };
+        let (manager, data) = (is_connection_manager(&request), request.data);
+        let outcome = match service {
+            ServiceCode::UnconnectedSend if manager => return self.forward(module, data, caller, now),
+            ServiceCode::ForwardOpen if manager && caller.may_open() => {
+                self.open(module, false, data, caller.session, now)
+            }
+            ServiceCode::LargeForwardOpen if manager && caller.may_open() && self.config.large => {
+                self.open(module, true, data, caller.session, now)
+            }
+            ServiceCode::ForwardClose if manager && caller.may_open() => self.close(module, data),
+            _ => match self.modules.get_mut(module) {
+                Some(objects) => objects.carry_out(&request, now),
+                None => Err(GeneralStatus::PathDestinationUnknown.into()),
+            },
+        };
+        Answer::new(service, outcome)
     }
 
     /// A session handle that no other connection has. Never 0.
     pub(super) fn open_session(&mut self) -> SessionHandle {
         self.last_session = self.last_session.checked_add(1).unwrap_or(1);
         SessionHandle(self.last_session)
+    }
+
+    /// The session was unregistered: its connections end, too.
+    pub(super) fn close_session(&mut self, session: SessionHandle) {
+        let closed = self.connections.close_session(session);
+        self.counters.unregistered += u64::try_from(closed).unwrap_or(u64::MAX);
     }
 
     /// What is to go wrong with the next reply.
@@ -147,72 +194,46 @@ impl Device {
         self.answered = self.answered.wrapping_add(1);
         fault.copied().unwrap_or(Fault::Ok)
     }
-}
 
-/// Finds the instance. Instance 0, the class itself, is there but has no services.
-fn find(class: ClassCode, instance: u32) -> Result<Object, GeneralStatus> {
-    let object = match (class, instance) {
-        (ClassCode::Identity, 1) => Object::Identity,
-        (ClassCode::MessageRouter | ClassCode::ConnectionManager, 1) => Object::Silent,
-        (ClassCode::Assembly, INPUT_ASSEMBLY) => Object::Input,
-        (ClassCode::Assembly, OUTPUT_ASSEMBLY) => Object::Output,
-        (ClassCode::DpiParameter, number) if parameter::exists(number) => Object::Parameter(number),
-        (ClassCode::TcpIpInterface, 1) => Object::TcpIp,
-        (ClassCode::EthernetLink, 1) => Object::EthernetLink,
-        (class, 0) if CLASSES.contains(&class) => return Err(GeneralStatus::ServiceNotSupported),
-        _ => return Err(GeneralStatus::PathDestinationUnknown),
-    };
-    Ok(object)
-}
-
-/// The classes of which there are instances.
-const CLASSES: [ClassCode; 7] = [
-    ClassCode::Identity,
-    ClassCode::MessageRouter,
-    ClassCode::Assembly,
-    ClassCode::ConnectionManager,
-    ClassCode::DpiParameter,
-    ClassCode::TcpIpInterface,
-    ClassCode::EthernetLink,
-];
-
-/// A request to class, instance and attribute; a missing number is 0.
-#[derive(Clone, Copy, Debug)]
-struct Request<'a> {
-    service: ServiceCode,
-    class: ClassCode,
-    instance: u32,
-    attribute: u16,
-    data: &'a [u8],
-}
-
-impl<'a> Request<'a> {
-    fn decode(bytes: &'a [u8]) -> Result<Self, GeneralStatus> {
-        let mut reader = Reader::new(bytes);
-        let service = reader.u8().map_err(|_| GeneralStatus::NotEnoughData)?;
-        let words = reader.u8().map_err(|_| GeneralStatus::NotEnoughData)?;
-        if service >= ServiceCode::REPLY {
-            return Err(GeneralStatus::ServiceNotSupported);
-        }
-        let path = reader.take(2 * usize::from(words)).map_err(|_| GeneralStatus::PathSizeInvalid)?;
-        let path = Epath::decode(path).map_err(|_| GeneralStatus::PathSegmentError)?;
-        let understood = path.segments().iter().all(|segment| {
-            matches!(segment, Segment::Logical(logical) if matches!(
-                logical.kind,
-                LogicalKind::Class | LogicalKind::Instance | LogicalKind::Attribute
-            ))
-        });
-        if !understood {
-            return Err(GeneralStatus::PathSegmentError);
-        }
-        let number = |kind| path.logical(kind).unwrap_or(0);
-        let small = |kind, status| u16::try_from(number(kind)).map_err(|_| status);
-        Ok(Self {
-            service: ServiceCode(service),
-            class: ClassCode(small(LogicalKind::Class, GeneralStatus::PathDestinationUnknown)?),
-            instance: number(LogicalKind::Instance),
-            attribute: small(LogicalKind::Attribute, GeneralStatus::AttributeNotSupported)?,
-            data: reader.rest(),
-        })
+    pub(super) fn has(&self, quirk: Quirk) -> bool {
+        self.config.quirks.contains(&quirk)
     }
+
+    /// The header of a reply.
+    pub(super) fn reply_header(&self, request: Header, status: EncapsulationStatus) -> Header {
+        let reply = request.reply(status);
+        if self.has(Quirk::NoContext) { Header { context: SenderContext::default(), ..reply } } else { reply }
+    }
+}
+
+/// Counts something in the Connection Managers at both ends of a route.
+pub(super) fn count(modules: &mut [Objects], from: usize, to: usize, what: Count) {
+    for (index, objects) in modules.iter_mut().enumerate() {
+        if index == from || index == to {
+            objects.counts.add(what);
+        }
+    }
+}
+
+fn is_connection_manager(request: &Request<'_>) -> bool {
+    (request.class, request.instance) == (ClassCode::ConnectionManager, 1)
+}
+
+fn opens_or_closes(request: &[u8]) -> bool {
+    let service = service_of(request);
+    let asked = [ServiceCode::ForwardOpen, ServiceCode::LargeForwardOpen, ServiceCode::ForwardClose]
+        .contains(&service);
+    asked && Request::decode(request).is_ok_and(|request| is_connection_manager(&request))
+}
+
+/// A connection size counts the sequence count.
+fn message_size(connection_size: u16) -> usize {
+    usize::from(connection_size).saturating_sub(2).min(MAX_CONNECTED_MESSAGE)
+}
+
+fn within(max: usize, service: ServiceCode, answer: Answer) -> Answer {
+    if answer.message.len() <= max {
+        return answer;
+    }
+    Answer::refusal(service, GeneralStatus::ReplyDataTooLarge)
 }

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use crate::wire::{EncapsulationStatus, GeneralStatus};
 
-/// What happens to the reply of one `SendRRData` request. The device has carried the request out, except for
+/// What happens to the reply of one `SendRRData` or `SendUnitData` request. The device has carried the request out, except for
 /// [`Fault::ErrorStatus`] and [`Fault::EncapsulationStatus`], which refuse it.
 ///
 /// As text: the names below, as in `--fault drop --fault status=0x64`.
@@ -31,13 +31,27 @@ pub enum Fault {
     Close,
     /// `error=N`: a general status, such as `error=0x10`.
     ErrorStatus(GeneralStatus),
+    /// `wrong-connection-id`: somebody else's connection id; only in connected replies.
+    WrongConnectionId,
+    /// `wrong-sequence`: another sequence count; only in connected replies.
+    WrongSequence,
+}
+
+impl Fault {
+    /// The status with which the request is refused.
+    pub(super) const fn refusal(self) -> Option<GeneralStatus> {
+        match self {
+            Self::ErrorStatus(status) => Some(status),
+            _ => None,
+        }
+    }
 }
 
 /// The text is none of the fault names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a fault is one of ok, drop, half-frame, wrong-context, wrong-session, wrong-service, garbage, close, \
-     status=N (encapsulation status, 32 bit) or error=N (general status, 8 bit); N as 100 or 0x64"
+    "a fault is one of ok, drop, half-frame, wrong-context, wrong-session, wrong-service, wrong-connection-id, \
+     wrong-sequence, garbage, close, status=N (encapsulation status, 32 bit) or error=N (general status, 8 bit); N as 100 or 0x64"
 )]
 pub struct UnknownFault;
 
@@ -52,6 +66,8 @@ impl FromStr for Fault {
             "wrong-context" => Self::WrongContext,
             "wrong-session" => Self::WrongSession,
             "wrong-service" => Self::WrongService,
+            "wrong-connection-id" => Self::WrongConnectionId,
+            "wrong-sequence" => Self::WrongSequence,
             "garbage" => Self::Garbage,
             "close" => Self::Close,
             _ => {
@@ -78,6 +94,8 @@ impl fmt::Display for Fault {
             Self::WrongContext => "wrong-context",
             Self::WrongSession => "wrong-session",
             Self::WrongService => "wrong-service",
+            Self::WrongConnectionId => "wrong-connection-id",
+            Self::WrongSequence => "wrong-sequence",
             Self::Garbage => "garbage",
             Self::Close => "close",
             Self::EncapsulationStatus(status) => return write!(f, "status={status}"),
@@ -107,6 +125,8 @@ mod tests {
             Fault::WrongContext,
             Fault::WrongSession,
             Fault::WrongService,
+            Fault::WrongConnectionId,
+            Fault::WrongSequence,
             Fault::Garbage,
             Fault::Close,
             Fault::EncapsulationStatus(EncapsulationStatus(0x65)),

@@ -29,18 +29,33 @@
 //! | 43 | speed reference | REAL, Hz | writable, 30.0 at first |
 
 mod assembly;
+mod attribute;
+mod config;
 mod connection;
+mod connections;
+mod counters;
 mod datagram;
 mod device;
 mod fault;
+mod forward;
 mod identity;
+mod module;
 mod network;
+mod objects;
+mod opening;
+mod outbox;
 mod parameter;
+mod request;
+mod route;
+mod session;
 mod wave;
 
 pub use self::assembly::{ASSEMBLY_SIZE, INPUT_ASSEMBLY, OUTPUT_ASSEMBLY};
+pub use self::config::{Quirk, SimConfig, UnknownQuirk};
 pub use self::connection::SimConnection;
+pub use self::counters::Counters;
 pub use self::datagram::handle_datagram;
-pub use self::device::{Device, SimConfig};
+pub use self::device::Device;
 pub use self::fault::{Fault, UnknownFault};
 pub use self::identity::SimIdentity;
+pub use self::module::{BACKPLANE, ETHERNET, SimModule};

@@ -76,6 +76,11 @@ impl ConnectionParameters {
         ((self.flags >> 13) & 0b11) as u8
     }
 
+    /// Bit 15 of the 16-bit form: several originators may own the connection. Never so for explicit messages.
+    pub const fn is_redundant_owner(self) -> bool {
+        self.flags & 0x8000 != 0
+    }
+
     fn read(large: bool, reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
         if large {
             let [s0, s1, f0, f1] = reader.array()?;
@@ -125,29 +130,36 @@ impl ForwardOpen {
     /// Decodes the data of either service.
     pub fn decode(large: bool, data: &[u8]) -> Result<Self, DecodeError> {
         let mut reader = Reader::new(data);
-        let timeout = RequestTimeout::read(&mut reader)?;
-        let (o_t_id, t_o_id) = (ConnectionId(reader.u32()?), ConnectionId(reader.u32()?));
-        let triad = ConnectionTriad::read(&mut reader)?;
-        let [multiplier, ..] = reader.array::<4>()?;
-        let (o_t_rpi_us, o_t) = (reader.u32()?, ConnectionParameters::read(large, &mut reader)?);
-        let (t_o_rpi_us, t_o) = (reader.u32()?, ConnectionParameters::read(large, &mut reader)?);
-        let (transport, words) = (reader.u8()?, reader.u8()?);
+        let (open, words) = Self::read_head(large, &mut reader)?;
         let path = connection_manager::read_path(words.into(), &mut reader)?;
         reader.finish()?;
-        let multiplier = TimeoutMultiplier(multiplier);
-        Ok(Self {
+        Ok(Self { path, ..open })
+    }
+
+    /// Reads everything before the path, and of how many words the path is: a router looks at a path one hop after
+    /// the other. The path of the value is empty.
+    pub fn read_head(large: bool, reader: &mut Reader<'_>) -> Result<(Self, u8), DecodeError> {
+        let timeout = RequestTimeout::read(reader)?;
+        let (o_t_id, t_o_id) = (ConnectionId(reader.u32()?), ConnectionId(reader.u32()?));
+        let triad = ConnectionTriad::read(reader)?;
+        let [multiplier, ..] = reader.array::<4>()?;
+        let (o_t_rpi_us, o_t) = (reader.u32()?, ConnectionParameters::read(large, reader)?);
+        let (t_o_rpi_us, t_o) = (reader.u32()?, ConnectionParameters::read(large, reader)?);
+        let (transport, words) = (reader.u8()?, reader.u8()?);
+        let open = Self {
             timeout,
             o_t_id,
             t_o_id,
             triad,
-            multiplier,
+            multiplier: TimeoutMultiplier(multiplier),
             o_t_rpi_us,
             o_t,
             t_o_rpi_us,
             t_o,
             transport,
-            path,
-        })
+            path: Epath::default(),
+        };
+        Ok((open, words))
     }
 }
 

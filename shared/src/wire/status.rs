@@ -14,14 +14,20 @@ open_enum! {
         PathDestinationUnknown = 0x05,
         /// The class or instance does not have the service.
         ServiceNotSupported = 0x08,
+        /// Of several attributes at least one failed; each has its own status in the data.
+        AttributeListError = 0x0A,
         /// The attribute is read only.
         AttributeNotSettable = 0x0E,
+        /// The answer would be longer than the connection or the frame allows.
+        ReplyDataTooLarge = 0x11,
         /// The request carried too few bytes.
         NotEnoughData = 0x13,
         /// The attribute number is unknown.
         AttributeNotSupported = 0x14,
         /// The request carried too many bytes.
         TooMuchData = 0x15,
+        /// A parameter of the request has a value that it cannot have.
+        InvalidParameter = 0x20,
         /// The path size is not that of the path.
         PathSizeInvalid = 0x26,
     }

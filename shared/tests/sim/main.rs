@@ -101,21 +101,25 @@ fn what_the_device_cannot_do_is_refused_with_the_right_status() {
     write_31.extend([0; 31]);
     let mut write_33 = write_31.clone();
     write_33.extend([0; 2]);
-    let rows: [(&str, &[u8], u8); 23] = [
+    let rows: [(&str, &[u8], u8); 27] = [
         ("unknown class", &hex!("0E 03 20 EE 24 01 30 01"), 0x05),
         ("unknown class at class level", &hex!("0E 03 20 EE 24 00 30 01"), 0x05),
         ("unknown instance", &hex!("0E 03 20 01 24 02 30 01"), 0x05),
         ("unknown assembly", &hex!("0E 03 20 04 24 01 30 03"), 0x05),
         ("unknown parameter", &hex!("0E 03 20 93 24 02 30 09"), 0x05),
-        ("the class itself", &hex!("0E 03 20 01 24 00 30 01"), 0x08),
+        ("unknown attribute of a class", &hex!("0E 03 20 01 24 00 30 04"), 0x14),
+        ("read only class", &hex!("10 03 20 01 24 00 30 01 00 00"), 0x0E),
+        ("all attributes of a class", &hex!("01 02 20 01 24 00"), 0x08),
         ("unknown attribute", &hex!("0E 03 20 01 24 01 30 63"), 0x14),
         ("no attribute", &hex!("0E 02 20 01 24 01"), 0x14),
         ("write to an unknown attribute", &hex!("10 03 20 01 24 01 30 63 00"), 0x14),
         ("unknown service", &hex!("4C 03 20 01 24 01 30 01"), 0x08),
         ("all attributes where they are not defined", &hex!("01 02 20 04 24 64"), 0x08),
-        ("routed request", &hex!("52 02 20 06 24 01 0A F0 00 00 01 00 01 00"), 0x08),
+        ("routed request without a message", &hex!("52 02 20 06 24 01 0A F0 00 00 01 00 01 00"), 0x20),
+        ("routed request to another class", &hex!("52 02 20 01 24 01 0A F0 00 00 01 00 01 00"), 0x08),
         ("several requests in one", &hex!("0A 02 20 02 24 01 00 00"), 0x08),
-        ("opening a connection", &hex!("54 02 20 06 24 01"), 0x08),
+        ("opening nothing", &hex!("54 02 20 06 24 01"), 0x13),
+        ("closing nothing", &hex!("4E 02 20 06 24 01"), 0x13),
         ("read only identity", &hex!("10 03 20 01 24 01 30 07 00"), 0x0E),
         ("read only input", &hex!("10 03 20 04 24 64 30 03 00"), 0x0E),
         ("read only parameter", &hex!("10 03 20 93 24 01 30 09 00 00"), 0x0E),
