@@ -5,6 +5,7 @@
 
 pub mod capture;
 pub mod cli;
+pub mod client;
 pub mod settings;
 
 mod app;
@@ -23,8 +24,10 @@ mod wall_clock;
 mod ws;
 
 use std::future::Future;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use cipdeck_shared::sim::{Device, SimConfig};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
@@ -95,4 +98,10 @@ pub(crate) async fn serve(
             Err(_) => Ok(()),
         },
     }
+}
+
+/// Answers on a listener as one simulated device, until this future is dropped.
+pub async fn simulate(listener: TcpListener, device: SimConfig) {
+    let device = Arc::new(Mutex::new(Device::new(device)));
+    simulate::answer_tcp(listener, device, runner::Clock::start()).await;
 }

@@ -143,6 +143,12 @@ impl Viewer {
         .await
     }
 
+    /// Reads one message, whatever it is.
+    pub async fn news(&mut self) {
+        let message = self.next().await;
+        self.take(&message);
+    }
+
     async fn next(&mut self) -> Value {
         within("a message of the relay", PATIENCE, async {
             loop {

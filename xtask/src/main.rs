@@ -1,6 +1,7 @@
 //! `cargo xtask`: builds, runs, tests and checks cipdeck; the one entry for people and for CI.
 
 mod arch;
+mod bench;
 mod check;
 mod dist;
 mod frontend;
@@ -60,6 +61,15 @@ enum Task {
         #[command(flatten)]
         toolchain: Preference,
     },
+    /// Measures our client beside others, through the relay, and with 1,000 cyclic blocks; needs Linux.
+    Bench {
+        /// Fewer and shorter rounds: good for a look, not for a document.
+        #[arg(long)]
+        quick: bool,
+        /// Only tables whose name contains this: peers, simulated, websocket, cyclic.
+        #[arg(long)]
+        only: Option<String>,
+    },
     /// Format, lints, layers, documentation, licences.
     Check(Preference),
     /// Leaves the release binary at target/dist/cipdeck.
@@ -86,6 +96,7 @@ impl Task {
         match self {
             Self::Run { addresses, toolchain } => run::all(report, toolchain, addresses)?,
             Self::Test { long, toolchain } => test::all(report, toolchain, long)?,
+            Self::Bench { quick, only } => bench::all(report, quick, only)?,
             Self::Check(preference) => check::all(report, preference)?,
             Self::Dist(preference) => dist::build(report, preference)?,
             Self::Toolchain(preference) => {

@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use cipdeck_shared::api::{BlockStatus, LastSuccess};
-use cipdeck_shared::config::{BlockId, MsgCipGeneric};
-use cipdeck_shared::engine::{BlockView, Exchange};
+use cipdeck_shared::config::MsgCipGeneric;
 use cipdeck_shared::plan::MessagePlan;
 use clap::Args;
 
 use super::report::{self, Report};
 use super::{Exit, say};
 use crate::capture::Recorder;
-use crate::runner::{Ended, Observer, Refused, Runner, Tap, Trace};
-use crate::{shutdown, wall_clock};
+use crate::client::{Answer, Client, Message};
+use crate::runner::Tap;
+use crate::shutdown;
 
 /// How often, and how it is printed.
 #[derive(Clone, Debug, Args)]
@@ -30,12 +29,6 @@ pub(super) struct Mode {
     pcap: Option<PathBuf>,
 }
 
-/// The only block there is.
-const BLOCK: BlockId = BlockId(1);
-
-/// Its only revision.
-const REVISION: u64 = 1;
-
 /// Runs what can be run and prints it.
 pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
     let (plan, findings) = MessagePlan::parse(config);
@@ -50,14 +43,14 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
         Ok(recorder) => recorder.map(Arc::new),
         Err(error) => return Exit::internal(&error),
     };
-    let runner = Runner::tapped(Arc::new(Nobody), recorder.clone().map(|tap| tap as Arc<dyn Tap>));
-    runner.put(BLOCK, REVISION, Ok(plan));
+    let client = Client::tapped(recorder.clone().map(|tap| tap as Arc<dyn Tap>));
+    let mut message = client.planned(plan);
     let exit = tokio::select! {
-        exit = repeat(&runner, config, mode) => exit,
+        exit = repeat(&mut message, config, mode) => exit,
         // What is under way is cancelled by stopping: nobody waits for its answer.
         () = shutdown::requested() => Exit::interrupted(&"interrupted; what had been sent may have been carried out"),
     };
-    runner.stop().await;
+    client.stop().await;
     match recorder.map_or(Ok(()), |recorder| recorder.complete()) {
         Ok(()) => exit,
         Err(error) => {
@@ -67,13 +60,13 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
     }
 }
 
-async fn repeat(runner: &Runner, config: &MsgCipGeneric, mode: &Mode) -> Exit {
+async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> Exit {
     let mut exit = Exit::SUCCESS;
     for number in 1..=mode.repeat.unwrap_or(1) {
         // Whoever types the command has seen what it sends.
-        let ended = match runner.run(BLOCK, Some(REVISION)).await {
+        let ended = match message.run().await {
             Ok(ended) => ended,
-            Err(refused) => return not_run(refused),
+            Err(stopped) => return Exit::internal(&format!("the message could not be started: {stopped}")),
         };
         print(&ended, config, mode, number);
         if exit == Exit::SUCCESS {
@@ -83,11 +76,7 @@ async fn repeat(runner: &Runner, config: &MsgCipGeneric, mode: &Mode) -> Exit {
     exit
 }
 
-fn not_run(refused: Refused) -> Exit {
-    Exit::internal(&format!("the message could not be started: {refused}"))
-}
-
-fn print(ended: &Ended, config: &MsgCipGeneric, mode: &Mode, number: u64) {
+fn print(ended: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
     let report = Report::new(ended);
     match (mode.json, mode.repeat) {
         (true, _) => say(&report.json()),
@@ -96,19 +85,5 @@ fn print(ended: &Ended, config: &MsgCipGeneric, mode: &Mode, number: u64) {
     }
     if mode.json && ended.status.status.error {
         eprintln!("{}", report.line());
-    }
-}
-
-/// There is no viewer: the end of a run is its only news.
-struct Nobody;
-
-impl Observer for Nobody {
-    fn changed(&self, _: BlockId, _: &BlockView) {}
-
-    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange, _: Option<Trace>) -> BlockStatus {
-        let at = wall_clock::now();
-        let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
-        status.last = status.q.then(|| LastSuccess::of(&status, at));
-        status
     }
 }

@@ -49,11 +49,11 @@ pub(crate) trait Observer: Send + Sync + 'static {
 
 /// How a run ended: with DN or ER.
 #[derive(Clone, Debug)]
-pub(crate) struct Ended {
+pub struct Ended {
     /// The block at that moment: its IN is still TRUE.
-    pub(crate) status: BlockStatus,
+    pub status: BlockStatus,
     /// What went over the wire.
-    pub(crate) exchange: Exchange,
+    pub exchange: Exchange,
 }
 
 /// Why a command was not carried out.

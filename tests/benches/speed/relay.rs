@@ -1,0 +1,112 @@
+//! The way through the relay: WebSocket `run` to its answer, beside the bare client.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use cipdeck_tests::block;
+use cipdeck_tests::relay::Relay;
+use cipdeck_tests::rest::Rest;
+use cipdeck_tests::viewer::Viewer;
+use serde_json::json;
+
+use crate::compare::send;
+use crate::load::{Load, median, percentile};
+use crate::processor;
+use crate::target::{Kind, Targets};
+use crate::way::{Sender, Way};
+
+/// This process: a relay on one processor, until nobody holds its input open any more.
+pub(crate) fn serve(on: usize) {
+    processor::pin(on);
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("a runtime");
+    let relay = runtime.block_on(Relay::start());
+    println!("{}", relay.address);
+    std::io::stdout().flush().expect("somebody reads");
+    let _ = std::io::stdin().read_line(&mut String::new());
+    runtime.block_on(relay.stop());
+}
+
+/// A relay in a process of its own; it ends when it is dropped.
+#[derive(Debug)]
+pub(crate) struct RelayProcess {
+    child: Child,
+    /// Where it listens.
+    pub(crate) address: SocketAddr,
+}
+
+impl RelayProcess {
+    /// Starts it on a processor.
+    pub(crate) fn start(on: usize) -> Self {
+        let program = std::env::current_exe().expect("this program");
+        let mut child = Command::new(program)
+            .args(["relay", &on.to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("this program starts again");
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().expect("its output")).read_line(&mut line).expect("a line");
+        Self { child, address: line.trim().parse().expect("an address") }
+    }
+
+    /// The processor time that it has used, in steps of 10 ms.
+    pub(crate) fn time(&self) -> Duration {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap_or_default();
+        // After the name, which may contain anything: state is the first, utime and stime the 12th and 13th.
+        let numbers = stat.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
+        let ticks: u64 = numbers.filter_map(|word| word.parse::<u64>().ok()).sum();
+        Duration::from_millis(ticks * 10)
+    }
+}
+
+impl Drop for RelayProcess {
+    fn drop(&mut self) {
+        drop(self.child.stdin.take());
+        let _ = self.child.wait();
+    }
+}
+
+/// Measures both in turns and prints them.
+pub(crate) fn table(quick: bool) -> String {
+    let (rounds, measure) = if quick { (3, 250) } else { (9, 700) };
+    let targets = Targets::start(Kind::Ciplink, 1, 0);
+    let target = *targets.addresses.first().expect("one target");
+    let relay = RelayProcess::start(0);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let (mut viewer, id) = runtime.block_on(async {
+        let created = Rest::new(relay.address).create(&block::get(&format!("4,{target}"), 1, 1, 1)).await;
+        (Viewer::connect(relay.address).await, created)
+    });
+    let load = Load { way: Way::Unconnected, targets: vec![target], warm_up: 100, measure };
+    let (mut bare, mut through) = (Vec::new(), Vec::new());
+    let anywhere = processor::pin(0);
+    for _ in 0..rounds {
+        bare.extend(send(Sender::Ours, 0, &load).map(|sample| sample.p50));
+        through.push(runtime.block_on(web_socket(&mut viewer, &id, Duration::from_millis(measure))));
+    }
+    processor::unpin(&anywhere);
+    let (bare, through) = (median(bare), median(through));
+    format!(
+        "### Through the relay\n\nWebSocket `run` to its answer and the bare client's message, unconnected, one at a \
+         time, one processor; median of {rounds} rounds.\n\n\
+         | | p50 µs | ratio |\n| --- | ---: | ---: |\n\
+         | bare client | {bare:.1} | |\n| WebSocket `run` | {through:.1} | {:.2} |\n",
+        through / bare
+    )
+}
+
+/// The median, µs.
+async fn web_socket(viewer: &mut Viewer, id: &str, measure: Duration) -> f64 {
+    let end = Instant::now() + measure;
+    let mut durations = Vec::new();
+    while Instant::now() < end {
+        let since = Instant::now();
+        let answer = viewer.command(json!({ "type": "run", "block": id })).await;
+        durations.push(u64::try_from(since.elapsed().as_nanos()).unwrap_or(u64::MAX));
+        assert_eq!(answer["status"]["Q"], true, "{answer}");
+    }
+    durations.sort_unstable();
+    percentile(&durations, 50) / 1_000.0
+}
