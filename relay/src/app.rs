@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use tokio::sync::Mutex;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
@@ -16,6 +17,8 @@ pub(crate) struct App {
     pub(crate) hosts: Arc<AllowedHosts>,
     /// What it is all about.
     pub(crate) blocks: Blocks,
+    /// Held by the one search for devices that may be under way.
+    pub(crate) discovery: Arc<Mutex<()>>,
     /// Ready when the relay stops.
     pub(crate) stop: CancellationToken,
     /// The connected viewers.
@@ -25,6 +28,12 @@ pub(crate) struct App {
 impl App {
     /// Puts the parts together.
     pub(crate) fn new(address: SocketAddr, blocks: Blocks, stop: CancellationToken) -> Self {
-        Self { hosts: Arc::new(AllowedHosts::new(address)), blocks, stop, viewers: TaskTracker::new() }
+        Self {
+            hosts: Arc::new(AllowedHosts::new(address)),
+            blocks,
+            discovery: Arc::default(),
+            stop,
+            viewers: TaskTracker::new(),
+        }
     }
 }

@@ -10,6 +10,7 @@ pub mod settings;
 
 mod app;
 mod blocks;
+mod discover;
 mod draft;
 mod error;
 mod http;

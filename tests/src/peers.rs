@@ -63,6 +63,7 @@ impl CiplinkAdapter {
 #[derive(Debug)]
 pub struct Cpppo {
     address: SocketAddr,
+    udp: SocketAddr,
     _process: Process,
 }
 
@@ -75,18 +76,30 @@ impl Cpppo {
         let arguments = ["-m", "cpppo.server.enip", "-A", "-a", "127.0.0.1:0", "T=DINT[10]"];
         let process = Process::start(&tools::cpppo_python(), arguments);
         let port = process.line("cpppo prints its address", PATIENCE, tcp_port).await;
-        Self { address: SocketAddr::from((Ipv4Addr::LOCALHOST, port)), _process: process }
+        let udp = process.line("cpppo prints its UDP address", PATIENCE, udp_port).await;
+        let [address, udp] = [port, udp].map(|port| SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
+        Self { address, udp, _process: process }
     }
 
     /// `TargetCfg.Path` of this target.
     pub fn path(&self) -> String {
         fake_plc::path(self.address)
     }
+
+    /// Where it answers to `ListIdentity` over UDP.
+    pub fn udp(&self) -> SocketAddr {
+        self.udp
+    }
 }
 
 /// From `Network TCP Server address = ('127.0.0.1', 36149)`.
 fn tcp_port(line: &str) -> Option<u16> {
     line.strip_prefix("Network TCP Server address = ('127.0.0.1', ")?.strip_suffix(')')?.parse().ok()
+}
+
+/// From `Network UDP Server address = ('127.0.0.1', 36150)`: a port of its own when any free one may be taken.
+fn udp_port(line: &str) -> Option<u16> {
+    line.strip_prefix("Network UDP Server address = ('127.0.0.1', ")?.strip_suffix(')')?.parse().ok()
 }
 
 /// What a client of the package `cpppo` prints: `python -m cpppo.server.enip.MODULE`.

@@ -1,5 +1,5 @@
 //! Exit codes: 0 success; 1 internal, or cannot listen; 2 usage or error findings; 3 `ErrorID` 224; 4 everything else
-//! (timeout, refused, malformed).
+//! (timeout, refused, malformed, nobody answered).
 
 use std::process::ExitCode;
 
@@ -28,6 +28,11 @@ impl Exit {
 
     /// A message that did not end well, and did not even end by itself.
     pub(crate) fn interrupted(message: &impl ToString) -> Self {
+        Self { code: 4, message: Some(message.to_string()) }
+    }
+
+    /// Nobody has said anything.
+    pub(crate) fn unanswered(message: &impl ToString) -> Self {
         Self { code: 4, message: Some(message.to_string()) }
     }
 

@@ -1,6 +1,7 @@
 //! Everything that a person types: `cipdeck serve`, and the commands that talk to a device from here.
 
 mod check;
+mod discover;
 mod exit;
 mod explain;
 mod once;
@@ -29,7 +30,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit: 0 success; 1 internal, or cannot listen; 2 usage or error findings; 3 the device \
-                          refused (ErrorID 224); 4 everything else (timeout, refused, malformed)";
+                          refused (ErrorID 224); 4 everything else (timeout, refused, malformed, nobody answered)";
 
 #[derive(Clone, Debug, Args)]
 struct Logging {
@@ -52,6 +53,8 @@ enum Command {
     Send(send::Send),
     /// Run a block from a file from here; needs no relay.
     Run(run::Run),
+    /// Find devices on the network: who answers to ListIdentity.
+    Discover(discover::Discover),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
 }
@@ -80,6 +83,7 @@ impl Cli {
             Command::Simulate(simulate) => simulate.execute().await,
             Command::Send(send) => send.execute().await,
             Command::Run(run) => run.execute().await,
+            Command::Discover(discover) => discover.execute().await,
             Command::Check(check) => check.execute(),
         }
     }

@@ -3,6 +3,7 @@
 mod assets;
 mod blocks;
 mod commands;
+mod discovery;
 mod extract;
 mod guard;
 mod health;
@@ -26,6 +27,7 @@ pub(crate) fn router(app: App) -> Router {
         .route("/health", get(health::show))
         .route("/ws", get(ws::upgrade))
         .route("/check", post(commands::check))
+        .route("/discover", post(discovery::discover))
         .route("/blocks", get(blocks::list).post(blocks::create))
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
         .route("/blocks/{id}/status", get(blocks::status))

@@ -18,22 +18,28 @@ use crate::simulate;
 const PIPE: usize = 64 * 1024;
 
 /// Opens a TCP connection. How long that may take is the engine's business: it gives up by dropping this future.
-pub(super) async fn open(endpoint: &Endpoint) -> Result<TcpStream, (ConnectError, String)> {
+pub(super) async fn open(endpoint: &Endpoint) -> Result<(TcpStream, Ends), (ConnectError, String)> {
     let addresses = resolve(endpoint).await?;
     let mut last = (ConnectError::Unresolved, format!("{} has no address", endpoint.host));
     for address in addresses {
-        match TcpStream::connect(address).await {
-            Ok(stream) => {
+        match connect(address).await {
+            Ok((stream, ends)) => {
                 // Without it a request may wait for the acknowledgement of the one before.
                 if let Err(error) = stream.set_nodelay(true) {
                     tracing::debug!(%error, target.address = %address, "cannot set TCP_NODELAY");
                 }
-                return Ok(stream);
+                return Ok((stream, ends));
             }
             Err(error) => last = (reason(&error), format!("{address}: {error}")),
         }
     }
     Err(last)
+}
+
+async fn connect(address: SocketAddr) -> io::Result<(TcpStream, Ends)> {
+    let stream = TcpStream::connect(address).await?;
+    let ends = Ends { local: stream.local_addr()?, peer: stream.peer_addr()? };
+    Ok((stream, ends))
 }
 
 /// A connection to the device that is part of the relay.

@@ -50,9 +50,8 @@ async fn serve(
                 carry(stream, link, connect::built_in_ends(link), &inner, &wake).await
             }
             Target::Network(endpoint) => match connect::open(endpoint).await {
-                Ok(stream) => {
+                Ok((stream, ends)) => {
                     tracing::debug!(target.address = %endpoint, link = link.0, "connected");
-                    let ends = Ends { local: stream.local_addr()?, peer: stream.peer_addr()? };
                     carry(stream, link, ends, &inner, &wake).await
                 }
                 Err((error, detail)) => {

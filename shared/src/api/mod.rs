@@ -1,9 +1,11 @@
 //! The types of REST and WebSocket. Described with examples in docs/REST.md and docs/WEBSOCKET.md.
 
+mod discovery;
 mod rest;
 mod status;
 mod ws;
 
+pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
 };

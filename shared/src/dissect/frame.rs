@@ -138,22 +138,14 @@ fn identity(tree: &mut Tree<'_>) -> Option<()> {
         [major, minor] => format!("{major}.{minor}"),
         _ => String::new(),
     })?;
-    tree.u16("status", |status| format!("{status:#06x}"))?;
+    tree.u16("status", |status| format!("{status:#06x} {}", table::identity_status(status)))?;
     tree.u32("serial number", |serial| format!("{serial:#010x}"))?;
     let length = tree.peek().u8().unwrap_or_default();
     tree.leaf(1 + usize::from(length), "product name", |bytes| text(bytes.get(1..).unwrap_or_default()))?;
     if !tree.is_empty() {
         tree.u8("state", |state| {
-            let name = match state {
-                0 => " nonexistent",
-                1 => " self test",
-                2 => " standby",
-                3 => " operational",
-                4 => " major recoverable fault",
-                5 => " major unrecoverable fault",
-                _ => "",
-            };
-            format!("{state}{name}")
+            let words = table::identity_state(state).unwrap_or("not in the tables");
+            format!("{state} {words}")
         })?;
     }
     Some(())

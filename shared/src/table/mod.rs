@@ -5,12 +5,14 @@
 
 mod access;
 mod attribute;
+mod identity;
 mod tsv;
 
 use crate::wire::{EncapsulationStatus, GeneralStatus, ServiceCode};
 
 pub use self::access::{Access, classify};
 pub use self::attribute::{Field, FieldKind, attribute};
+pub use self::identity::{identity_state, identity_status};
 use self::tsv::Table;
 
 const SERVICES: Table = Table::new(include_str!("../../data/services.tsv"));

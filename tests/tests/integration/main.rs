@@ -4,6 +4,7 @@
 mod bad_target;
 mod blocks;
 mod command_line;
+mod discover;
 mod door;
 mod late_reply;
 mod limits;

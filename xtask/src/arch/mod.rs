@@ -26,6 +26,8 @@ const LAYERS: &[(&str, &[&str])] = &[
         &[
             "config",
             "plan",
+            "table",
+            "wire::ListIdentityItem",
             "engine::BlockView",
             "engine::Cause",
             "engine::CipStatus",
