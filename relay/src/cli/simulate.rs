@@ -4,13 +4,13 @@ use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex};
 
 use cipdeck_shared::engine::Millis;
-use cipdeck_shared::sim::{Device, Fault, SimConfig};
+use cipdeck_shared::sim::{Device, Fault, Quirk, SimConfig};
 use cipdeck_shared::wire::SocketAddress;
 use clap::Args;
 use tokio::net::{TcpListener, UdpSocket};
 
 use super::{Exit, say};
-use crate::runner::Clock;
+use crate::runner::{Clock, lock};
 use crate::{shutdown, simulate};
 
 /// The flags of `simulate`.
@@ -24,13 +24,27 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "MS", default_value_t = 0)]
     delay: u32,
     /// What goes wrong: the first reply suffers the first, and so on, round and round. One of ok, drop, half-frame,
-    /// wrong-context, wrong-session, wrong-service, garbage, close, status=N (encapsulation), error=N (general).
+    /// wrong-context, wrong-session, wrong-service, wrong-connection-id, wrong-sequence, garbage, close, status=N
+    /// (encapsulation), error=N (general).
     #[arg(long = "fault", value_name = "KIND")]
     faults: Vec<Fault>,
+    /// What it always does differently: no-context (sender context 0 in every reply) or own-connection-id (connected
+    /// replies carry the id of the request).
+    #[arg(long = "quirk", value_name = "KIND")]
+    quirks: Vec<Quirk>,
+    /// How many class 3 connections can be open at once
+    #[arg(long, value_name = "N", default_value_t = SimConfig::default().max_connections)]
+    max_connections: usize,
+    /// Longest connected message, with its sequence count; Forward_Open alone cannot say more than 511
+    #[arg(long, value_name = "BYTES", default_value_t = SimConfig::default().max_size)]
+    connection_size: u16,
+    /// It does not know Large_Forward_Open
+    #[arg(long)]
+    no_large: bool,
 }
 
 impl Simulate {
-    /// Runs until the process is asked to stop.
+    /// Runs until the process is asked to stop; then it says in one line what it has done.
     pub(super) async fn execute(self) -> Exit {
         let shutdown = shutdown::requested();
         let (tcp, udp) = match bind(self.listen).await {
@@ -42,15 +56,26 @@ impl Simulate {
             address: socket_address(address),
             delay: Millis::from(self.delay),
             faults: self.faults,
+            quirks: self.quirks,
+            max_connections: self.max_connections,
+            max_size: self.connection_size,
+            large: !self.no_large,
             ..SimConfig::default()
         };
+        let clock = Clock::start();
         let device = Arc::new(Mutex::new(Device::new(config)));
         say(&format!("cipdeck simulates a device on {address} (TCP and UDP)"));
         tokio::select! {
-            () = simulate::answer_tcp(tcp, Arc::clone(&device), Clock::start()) => {}
-            () = simulate::answer_udp(udp, device) => {}
+            () = simulate::answer_tcp(tcp, Arc::clone(&device), clock) => {}
+            () = simulate::answer_udp(udp, Arc::clone(&device)) => {}
             () = shutdown => {}
         }
+        let counters = {
+            let mut device = lock(&device);
+            device.handle_timeout(clock.now());
+            device.counters()
+        };
+        say(&counters.to_string());
         Exit::SUCCESS
     }
 }

@@ -1,24 +1,40 @@
-//! A small EtherNet/IP device without a socket: for trying a message without hardware, and for tests.
+//! A small EtherNet/IP device without a socket, in a chassis with a few others: for trying a message without hardware,
+//! and for tests.
 //!
 //! Three levels, each usable alone:
-//! * [`Device`] answers message router requests: objects, attributes, refusals.
+//! * [`Device`] answers message router requests: objects, attributes, routes, connections, refusals.
 //! * [`SimConnection`] is one TCP connection to it: sessions, framing, delay and [faults](Fault).
 //! * [`handle_datagram`] answers UDP.
 //!
-//! Bytes and time come in, bytes go out; nothing waits. One `Device` serves any number of connections. Values move
+//! Bytes and time come in, bytes go out; nothing waits. One `Device` serves any number of TCP connections. Values move
 //! as functions of the time that is passed in, so a test sees what it asks for.
+//!
+//! # What is there
+//!
+//! [Modules](SimModule) in a chassis and on an Ethernet, each with values of its own. [`SimModule::usual`]:
+//!
+//! | slot (port 1) | address (port 2) | who |
+//! | --- | --- | --- |
+//! | 0 | that of the TCP connection | the device itself |
+//! | 1 | | cipdeck demo I/O |
+//! | 3 | 192.168.1.10 | cipdeck demo bridge |
+//! | | 192.168.1.20 | cipdeck demo remote |
+//!
+//! The objects of each:
 //!
 //! | object | attributes |
 //! | --- | --- |
 //! | Identity 1/1 | 1 to 7, Get_Attributes_All |
-//! | Message Router 2/1, Connection Manager 6/1 | none: every service is refused with 0x08 |
+//! | Message Router 2/1 | none |
 //! | Assembly 4/100 | 3: 32 bytes of input, move by themselves |
 //! | Assembly 4/150 | 3: 32 bytes of output, writable, remembered |
+//! | Connection Manager 6/1 | 1 to 8: what it has counted, Get_Attributes_All |
 //! | DPI Parameter 147/n | 9: the value; n = 1, 7, 41, 42, 43, see below |
-//! | TCP/IP Interface 245/1 | 5 |
-//! | Ethernet Link 246/1 | 1 to 3 |
+//! | TCP/IP Interface 245/1 | 5; only of a module with an address |
+//! | Ethernet Link 246/1 | 1 to 3; only of a module with an address |
 //!
-//! The parameters:
+//! Get_Attribute_List works everywhere, and instance 0 of each class has 1 revision, 2 highest instance and 3 number of
+//! instances. The parameters:
 //!
 //! | n | value | type | |
 //! | --- | --- | --- | --- |
@@ -27,6 +43,21 @@
 //! | 41 | acceleration time | INT, 0.01 s | writable, 1000 at first |
 //! | 42 | deceleration time | INT, 0.01 s | writable, 1000 at first |
 //! | 43 | speed reference | REAL, Hz | writable, 30.0 at first |
+//!
+//! # Routes
+//!
+//! Unconnected_Send and Forward_Open follow their path one hop after the other, as bridges do. Where it does not lead on,
+//! the router answers 01 with 0x0311 (no such port), 0x0312 (no such slot, or no address), 0x0315 (no port segment), 0x0318
+//! (its own address), or, after the time that it was given, 0x0204 (nobody there), and how many words of the path it had
+//! left. What waits for that time holds up nothing else.
+//!
+//! # Connections
+//!
+//! Class 3 connections to the Message Router of any module. They belong to the session that opened them, but whoever
+//! knows the three numbers of a connection may close it. A request with the sequence count of the one before is answered
+//! from memory; a request to an id that is not open is dropped. When a TCP connection is lost its connections stay, as on
+//! many devices, until they have been silent for RPI x multiplier (at least 10 s before the first request) or somebody
+//! closes them; UnRegisterSession closes them at once.
 
 mod assembly;
 mod attribute;

@@ -1,0 +1,91 @@
+//! Any bytes at all.
+
+use cipdeck_shared::engine::time::Instant;
+use cipdeck_shared::sim::{Device, Fault, SimConfig, handle_datagram};
+use cipdeck_shared::wire::{Command, Encapsulation, EncapsulationStatus, GeneralStatus, MessageRouterReply};
+
+use super::frames::{at, frame, registered, rr, ud};
+use super::opening::{CLOSE, OPEN, along, with};
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+fn fault() -> impl Strategy<Value = Fault> {
+    prop::sample::select(vec![
+        Fault::Ok,
+        Fault::Drop,
+        Fault::HalfFrame,
+        Fault::WrongContext,
+        Fault::WrongSession,
+        Fault::WrongService,
+        Fault::WrongConnectionId,
+        Fault::WrongSequence,
+        Fault::Garbage,
+        Fault::Close,
+        Fault::EncapsulationStatus(EncapsulationStatus(0x64)),
+        Fault::ErrorStatus(GeneralStatus(0x02)),
+    ])
+}
+
+/// Frames with plausible headers and any data, so that more than the deframer is met.
+fn frames() -> impl Strategy<Value = Vec<u8>> {
+    let command = prop::sample::select(vec![0_u16, 4, 0x63, 0x64, 0x65, 0x66, 0x6F, 0x70, 0x72, 0x99]);
+    let one = (command, 0_u32..3, vec(any::<u8>(), 0..60))
+        .prop_map(|(command, session, data)| frame(Command(command), session, 0, &data));
+    let message = (0_u32..3, vec(any::<u8>(), 0..40)).prop_map(|(session, request)| rr(session, 0, &request));
+    // Ids are 0x40000001 and on, as opened.
+    let connected = (0_u32..3, 0x4000_0000_u32..0x4000_0003, 0_u16..3, vec(any::<u8>(), 0..40))
+        .prop_map(|(session, id, sequence, request)| ud(session, id, sequence, &request));
+    let one_change = (6_usize..40, any::<u8>());
+    let open =
+        (one_change, vec(any::<u8>(), 0..10), any::<bool>()).prop_map(|((place, byte), path, exact)| {
+            let open = with(&OPEN, &[(place, &[byte])]);
+            let path: Vec<u8> = path.into_iter().map(|byte| byte % 0x28).collect();
+            let path = &path[..path.len() / 2 * 2];
+            rr(1, 0, &if exact { open } else { along(&open, path) })
+        });
+    let send = (vec(any::<u8>(), 0..30), vec(0_u8..0x28, 0..12)).prop_map(|(message, route)| {
+        let length = u8::try_from(message.len() / 2 * 2).unwrap();
+        let words = u8::try_from(route.len() / 2).unwrap();
+        let head = [0x52, 2, 0x20, 6, 0x24, 1, 0, 0, length, 0];
+        let message = &message[..usize::from(length)];
+        rr(1, 0, &[&head[..], message, &[words, 0], &route[..usize::from(words) * 2]].concat())
+    });
+    let close = any::<u8>().prop_map(|byte| rr(1, 0, &with(&CLOSE, &[(8, &[byte % 2])])));
+    let any_frame = prop_oneof![one, message, connected, open, send, close, vec(any::<u8>(), 0..4)];
+    vec(any_frame, 0..10).prop_map(|frames| frames.concat())
+}
+
+proptest! {
+    #[test]
+    fn the_device_answers_any_request(request in vec(any::<u8>(), 0..80), now in any::<u64>()) {
+        let answer = Device::default().answer(&request, Instant(now));
+        let reply = MessageRouterReply::decode(&answer).unwrap();
+        prop_assert_eq!(reply.service.0, request.first().map_or(0, |service| service & 0x7F));
+    }
+
+    #[test]
+    fn any_bytes_cut_in_any_way_get_the_same_answer(
+        input in frames(), size in 1_usize..50, faults in vec(fault(), 0..4),
+    ) {
+        let answer = |size: usize| {
+            let config = SimConfig { faults: faults.clone(), ..SimConfig::default() };
+            let mut device = Device::new(config);
+            let (mut connection, _) = registered(&mut device);
+            let mut out = Vec::new();
+            for part in input.chunks(size) {
+                connection.handle_input(&mut device, part, at(1));
+                connection.poll_transmit(&mut out, at(1));
+            }
+            (out, connection.is_closed())
+        };
+        prop_assert_eq!(answer(size), answer(usize::MAX));
+    }
+
+    #[test]
+    fn any_datagram_gets_an_answer_or_none(datagram in frames()) {
+        if let Some(reply) = handle_datagram(&Device::default(), &datagram) {
+            prop_assert!(Encapsulation::decode(&reply).is_ok());
+        }
+    }
+}
