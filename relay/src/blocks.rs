@@ -134,7 +134,8 @@ impl Blocks {
 
     /// One message. The status at DN or ER.
     pub(crate) async fn run(&self, id: BlockId, confirm: Option<u64>) -> Result<BlockStatus, ApiError> {
-        Ok(self.0.runner.run(id, confirm).await?.status)
+        // A block that has been deleted meanwhile has no status.
+        self.0.runner.run(id, confirm).await?.status.ok_or_else(|| ApiError::no_block(id))
     }
 
     /// Sets IN.

@@ -9,7 +9,7 @@
 //! let config = MsgCipGeneric::product_name("4,192.168.1.100");
 //! let mut message = client.message(&config).map_err(|findings| format!("{findings:?}"))?;
 //! let answer = message.run().await?;
-//! println!("{:?} {:02x?}", answer.status.status, answer.exchange.response);
+//! println!("{:?} {:02x?}", answer.view.status, answer.exchange.response);
 //! client.stop().await;
 //! # Ok(())
 //! # }
@@ -17,13 +17,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, LastSuccess};
 use cipdeck_shared::config::{BlockId, MsgCipGeneric};
 use cipdeck_shared::engine::{BlockView, Exchange};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 
-pub use crate::runner::Ended as Answer;
 use crate::runner::{Observer, Refused, Runner, Tap, Trace};
 use crate::wall_clock;
 
@@ -39,6 +39,17 @@ pub struct Client {
 pub struct Message {
     runner: Runner,
     block: BlockId,
+}
+
+/// How a message ended: with DN or ER.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    block: BlockId,
+    at: SystemTime,
+    /// The block at that moment, with all edges of the message.
+    pub view: Box<BlockView>,
+    /// What went over the wire.
+    pub exchange: Box<Exchange>,
 }
 
 /// Why a message was not started.
@@ -92,10 +103,21 @@ impl Message {
     /// Sends it once and waits for its end, which may be a failure. A message goes on when this future is dropped.
     pub async fn run(&mut self) -> Result<Answer, NotStarted> {
         // Whoever wrote the program knows what it sends.
-        self.runner.run(self.block, Some(REVISION)).await.map_err(|refused| match refused {
+        let ended = self.runner.run(self.block, Some(REVISION)).await.map_err(|refused| match refused {
             Refused::Busy => NotStarted::Busy,
             Refused::Unavailable | Refused::UnknownBlock | Refused::NotPermitted(_) => NotStarted::Stopped,
-        })
+        })?;
+        Ok(Answer { block: self.block, at: SystemTime::now(), view: ended.view, exchange: ended.exchange })
+    }
+}
+
+impl Answer {
+    /// As `cipdeck send --json` prints it and the relay answers a run.
+    pub fn status(&self) -> BlockStatus {
+        let at = wall_clock::at(self.at);
+        let mut status = BlockStatus::new(self.block, &self.view, Some(at.clone()), None);
+        status.last = status.q.then(|| LastSuccess::of(&status, at));
+        status
     }
 }
 
@@ -112,10 +134,7 @@ struct Nobody;
 impl Observer for Nobody {
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
-    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange, _: Option<Trace>) -> BlockStatus {
-        let at = wall_clock::now();
-        let mut status = BlockStatus::new(block, view, Some(at.clone()), None);
-        status.last = status.q.then(|| LastSuccess::of(&status, at));
-        status
+    fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
+        None
     }
 }

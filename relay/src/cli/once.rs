@@ -64,26 +64,27 @@ async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> E
     let mut exit = Exit::SUCCESS;
     for number in 1..=mode.repeat.unwrap_or(1) {
         // Whoever types the command has seen what it sends.
-        let ended = match message.run().await {
-            Ok(ended) => ended,
-            Err(stopped) => return Exit::internal(&format!("the message could not be started: {stopped}")),
+        let answer = match message.run().await {
+            Ok(answer) => answer,
+            Err(error) => return Exit::internal(&format!("the message could not be started: {error}")),
         };
-        print(&ended, config, mode, number);
+        print(&answer, config, mode, number);
         if exit == Exit::SUCCESS {
-            exit = Exit::message(&ended.status.status);
+            exit = Exit::message(&answer.view.status);
         }
     }
     exit
 }
 
-fn print(ended: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
-    let report = Report::new(ended);
+fn print(answer: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
+    let status = answer.status();
+    let report = Report::new(&status, &answer.exchange);
     match (mode.json, mode.repeat) {
         (true, _) => say(&report.json()),
         (false, Some(_)) => say(&format!("{number:>4}  {}", report.line())),
         (false, None) => say(&report.text(config)),
     }
-    if mode.json && ended.status.status.error {
+    if mode.json && status.status.error {
         eprintln!("{}", report.line());
     }
 }

@@ -3,13 +3,13 @@
 use cipdeck_shared::api::{self, BlockStatus, Checked};
 use cipdeck_shared::config::{MsgCipGeneric, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
+use cipdeck_shared::engine::Exchange;
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
 use cipdeck_shared::wire::ServiceCode;
 use serde::Serialize;
 
 use super::explain;
-use crate::runner::Ended;
 
 /// All findings on stderr, one a line.
 pub(super) fn findings(findings: &[Finding]) {
@@ -41,10 +41,10 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(ended: &'a Ended) -> Self {
-        let (request, response) = (&ended.exchange.request, ended.exchange.response.as_deref());
+    pub(super) fn new(status: &'a BlockStatus, exchange: &Exchange) -> Self {
+        let (request, response) = (&exchange.request, exchange.response.as_deref());
         Self {
-            status: &ended.status,
+            status,
             response: response.map(write_hex),
             decoded: response.map(|response| dissect::decode(request, response)).unwrap_or_default(),
         }

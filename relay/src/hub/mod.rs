@@ -150,14 +150,14 @@ impl Observer for Hub {
         view: &BlockView,
         exchange: &Exchange,
         trace: Option<Trace>,
-    ) -> BlockStatus {
-        let mut status = BlockStatus::new(block, view, Some(wall_clock::now()), None);
+    ) -> Option<BlockStatus> {
+        let mut status = None;
         self.change(|latest| {
             if latest.rows.contains_key(&block) {
                 let version = latest.next(block);
                 if let Some(row) = latest.rows.get_mut(&block) {
                     row.finished(view, exchange.clone(), trace, version);
-                    status = row.with(block, view);
+                    status = Some(row.with(block, view));
                 }
             }
         });

@@ -92,7 +92,7 @@ fn the_last_success_survives_a_failure_and_sixteen_exchanges_are_kept() {
     }
     let failed = BlockView { phase: Phase::Failed, ..BlockView::default() };
     hub.changed(B1, &failed);
-    let status = hub.finished(B1, &failed, &Exchange::default(), None);
+    let status = hub.finished(B1, &failed, &Exchange::default(), None).unwrap();
     assert_eq!((status.res_data.as_str(), status.last.unwrap().res_data.as_str()), ("", "14"));
     let exchanges = hub.exchanges(B1).unwrap();
     assert_eq!((exchanges.len(), exchanges[0].request.as_str()), (16, "06"));

@@ -1,6 +1,7 @@
 //! The one function that reads and writes a PLC's socket.
 
 use std::io;
+use std::pin::pin;
 
 use cipdeck_shared::engine::LinkId;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
@@ -8,7 +9,7 @@ use tokio::sync::Notify;
 
 /// What the driver moves bytes for.
 pub(super) trait Machine {
-    /// Appends what is to be written now.
+    /// Appends what is to be written now: everything there is. Whoever has more wakes the driver again.
     fn poll_transmit(&self, link: LinkId, out: &mut Vec<u8>) -> bool;
     /// Hears what has been written.
     fn written(&self, link: LinkId, bytes: &[u8]);
@@ -28,15 +29,22 @@ where
     S: AsyncRead + AsyncWrite + Unpin,
 {
     let (mut out, mut input) = (Vec::new(), vec![0; READ_SIZE]);
+    let mut woken = pin!(wake.notified());
     loop {
-        while machine.poll_transmit(link, &mut out) {
-            tracing::trace!(link = link.0, bytes = ?out, "write");
-            io.write_all(&out).await?;
-            io.flush().await?;
-            machine.written(link, &out);
-            out.clear();
-        }
         tokio::select! {
+            // Ours first: a target that never stops talking cannot keep us from it.
+            biased;
+            () = &mut woken => {
+                // Bytes that come after this look wake again, even while these are being written.
+                woken.set(wake.notified());
+                if machine.poll_transmit(link, &mut out) {
+                    tracing::trace!(link = link.0, bytes = ?out, "write");
+                    io.write_all(&out).await?;
+                    io.flush().await?;
+                    machine.written(link, &out);
+                    out.clear();
+                }
+            }
             read = io.read(&mut input) => match read? {
                 0 => return Ok(()),
                 length => {
@@ -45,7 +53,6 @@ where
                     machine.handle_input(link, bytes);
                 }
             },
-            () = wake.notified() => {}
         }
     }
 }
@@ -58,25 +65,37 @@ mod tests {
 
     /// Answers `+1` to each byte.
     #[derive(Debug, Default)]
-    struct Echo(Mutex<Vec<u8>>);
+    struct Echo {
+        bytes: Mutex<Vec<u8>>,
+        wake: Notify,
+    }
+
+    impl Echo {
+        fn say(bytes: Vec<u8>) -> Self {
+            let echo = Self { bytes: Mutex::new(bytes), wake: Notify::new() };
+            echo.wake.notify_one();
+            echo
+        }
+    }
 
     impl Machine for Echo {
         fn poll_transmit(&self, _: LinkId, out: &mut Vec<u8>) -> bool {
-            out.append(&mut self.0.lock().unwrap());
+            out.append(&mut self.bytes.lock().unwrap());
             !out.is_empty()
         }
 
         fn written(&self, _: LinkId, _: &[u8]) {}
 
         fn handle_input(&self, _: LinkId, bytes: &[u8]) {
-            self.0.lock().unwrap().extend(bytes.iter().map(|byte| byte + 1));
+            self.bytes.lock().unwrap().extend(bytes.iter().map(|byte| byte + 1));
+            self.wake.notify_one();
         }
     }
 
     #[tokio::test]
     async fn bytes_go_both_ways_through_a_pipe_of_one_byte_and_closing_ends_it() {
         let (ours, mut theirs) = tokio::io::duplex(1);
-        let (echo, wake) = (Echo(Mutex::new(vec![1, 2, 3])), Notify::new());
+        let echo = Echo::say(vec![1, 2, 3]);
         let peer = async {
             let mut first = [0; 3];
             theirs.read_exact(&mut first).await.unwrap();
@@ -86,21 +105,21 @@ mod tests {
                 assert_eq!(theirs.read_u8().await.unwrap(), byte + 1);
             }
             // Something to say without having been asked.
-            echo.0.lock().unwrap().push(99);
-            wake.notify_one();
+            echo.bytes.lock().unwrap().push(99);
+            echo.wake.notify_one();
             assert_eq!(theirs.read_u8().await.unwrap(), 99);
             drop(theirs);
         };
-        let (ended, ()) = tokio::join!(drive(ours, LinkId(1), &echo, &wake), peer);
+        let (ended, ()) = tokio::join!(drive(ours, LinkId(1), &echo, &echo.wake), peer);
         ended.unwrap();
     }
 
     #[tokio::test]
     async fn dropping_it_in_the_middle_of_a_write_closes_the_socket() {
         let (ours, mut theirs) = tokio::io::duplex(2);
-        let (echo, wake) = (Echo(Mutex::new(vec![7; 100])), Notify::new());
+        let echo = Echo::say(vec![7; 100]);
         {
-            let driving = drive(ours, LinkId(1), &echo, &wake);
+            let driving = drive(ours, LinkId(1), &echo, &echo.wake);
             tokio::pin!(driving);
             let mut half = [0; 10];
             tokio::select! {

@@ -37,23 +37,25 @@ pub(crate) trait Observer: Send + Sync + 'static {
     /// A block looks different; `view.edges` are the new edges only.
     fn changed(&self, block: BlockId, view: &BlockView);
     /// A message has ended. `trace` says where it went, if it was permitted to go anywhere. Returns the status that
-    /// its run is answered with.
+    /// its run is answered with, if anybody wants one: most of it is text, which takes time.
     fn finished(
         &self,
         block: BlockId,
         view: &BlockView,
         exchange: &Exchange,
         trace: Option<Trace>,
-    ) -> BlockStatus;
+    ) -> Option<BlockStatus>;
 }
 
 /// How a run ended: with DN or ER.
 #[derive(Clone, Debug)]
-pub struct Ended {
-    /// The block at that moment: its IN is still TRUE.
-    pub status: BlockStatus,
+pub(crate) struct Ended {
+    /// The block at that moment, with all edges of the message: its IN is still TRUE.
+    pub(crate) view: Box<BlockView>,
     /// What went over the wire.
-    pub exchange: Exchange,
+    pub(crate) exchange: Box<Exchange>,
+    /// What the observer answers with.
+    pub(crate) status: Option<BlockStatus>,
 }
 
 /// Why a command was not carried out.
@@ -88,7 +90,7 @@ struct Inner {
     tap: Option<Arc<dyn Tap>>,
     clock: Clock,
     device: Arc<Mutex<Device>>,
-    /// When the engine wants to be called.
+    /// When the timer is to wake.
     wake: watch::Sender<Option<Instant>>,
     /// While stopping: something has happened.
     stepped: Notify,
@@ -106,6 +108,8 @@ struct State {
     /// The connection that carries a block's message.
     carried: HashMap<BlockId, Arc<Trail>>,
     runs: HashMap<(BlockId, u64), oneshot::Sender<Ended>>,
+    /// When the timer will wake.
+    armed: Option<Instant>,
     stopping: bool,
 }
 
@@ -229,12 +233,30 @@ impl Inner {
         while let Some(event) = state.engine.poll_event() {
             self.carry_out(event, &mut state, now);
         }
-        let next = state.engine.poll_timeout();
-        self.wake.send_if_modified(|wake| std::mem::replace(wake, next) != next);
+        self.arm(&mut state);
         if state.stopping {
             self.stepped.notify_one();
         }
         value
+    }
+
+    /// The timer wakes at the earliest time that it has been told. Waking for nothing is cheap and rare; telling it
+    /// of every message's limit, and again when the answer is there, is neither.
+    fn arm(&self, state: &mut State) {
+        let Some(next) = state.engine.poll_timeout() else { return };
+        if state.armed.is_none_or(|armed| next < armed) {
+            state.armed = Some(next);
+            self.wake.send_replace(Some(next));
+        }
+    }
+
+    /// The timer has woken.
+    fn tick(self: &Arc<Self>) {
+        self.with(|state, now| {
+            state.armed = None;
+            self.wake.send_replace(None);
+            state.engine.handle_timeout(now);
+        });
     }
 
     fn carry_out(self: &Arc<Self>, event: Event, state: &mut State, now: Instant) {
@@ -258,7 +280,7 @@ impl Inner {
                 let status = self.observer.finished(block, &view, &exchange, trace);
                 if let Some(run) = state.runs.remove(&(block, shot)) {
                     // Nobody may wait any more.
-                    let _ = run.send(Ended { status, exchange: *exchange });
+                    let _ = run.send(Ended { view, exchange, status });
                 }
             }
         }

@@ -1,5 +1,4 @@
-use cipdeck_shared::api::LastSuccess;
-use cipdeck_shared::config::MsgCipGeneric;
+use cipdeck_shared::config::{MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::{CauseKind, Phase, StatusBits};
 
 use super::*;
@@ -12,8 +11,8 @@ struct Nobody;
 impl Observer for Nobody {
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
-    fn finished(&self, block: BlockId, view: &BlockView, _: &Exchange, _: Option<Trace>) -> BlockStatus {
-        BlockStatus::new(block, view, None, None::<LastSuccess>)
+    fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
+        None
     }
 }
 
@@ -41,7 +40,7 @@ async fn output(runner: &Runner) -> String {
     (app.class, app.instance, app.attribute) = (4, 150, 3);
     let reader = BlockId(99);
     runner.put(reader, 1, Ok(plan(&config)));
-    runner.run(reader, None).await.unwrap().status.res_data
+    write_hex(&runner.run(reader, None).await.unwrap().view.res_data)
 }
 
 #[tokio::test]
@@ -49,8 +48,8 @@ async fn a_run_is_answered_with_done_before_in_falls() {
     let runner = Runner::start(Arc::new(Nobody));
     runner.put(BLOCK, 1, Ok(name_of_the_demo_device()));
     let ended = runner.run(BLOCK, None).await.unwrap();
-    assert_eq!(ended.status.status.status_bits, StatusBits(StatusBits::EN | StatusBits::DN), "{ended:?}");
-    assert!(ended.status.q && ended.status.input);
+    assert_eq!(ended.view.status.status_bits, StatusBits(StatusBits::EN | StatusBits::DN), "{ended:?}");
+    assert!(ended.view.q && ended.view.input);
     assert_eq!(ended.exchange.request, [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
     assert!(ended.exchange.request_frame.is_some() && ended.exchange.response_frame.is_some());
     let view = runner.view(BLOCK).unwrap();
@@ -96,7 +95,7 @@ async fn write_past_the_command_check(runner: &Runner) -> (String, BlockView) {
 async fn a_confirmed_write_is_sent_and_a_changed_one_has_to_be_confirmed_again() {
     let runner = Runner::start(Arc::new(Nobody));
     runner.put(BLOCK, 1, Ok(write(0x11)));
-    assert!(runner.run(BLOCK, Some(1)).await.unwrap().status.q);
+    assert!(runner.run(BLOCK, Some(1)).await.unwrap().view.q);
     assert_eq!(output(&runner).await, "11".repeat(32));
     runner.put(BLOCK, 2, Ok(write(0x22)));
     assert!(matches!(runner.run(BLOCK, Some(1)).await, Err(Refused::NotPermitted(_))));
@@ -112,7 +111,7 @@ async fn a_silent_target_times_out_and_a_cancelled_one_ends_at_once() {
     config.target_cfg.ucmm_timeout = 250;
     let runner = Runner::start(Arc::new(Nobody));
     runner.put(BLOCK, 1, Ok(plan(&config)));
-    let status = runner.run(BLOCK, None).await.unwrap().status;
+    let status = runner.run(BLOCK, None).await.unwrap().view;
     assert_eq!((status.status.error_id, status.status.sub_error_id), (55, 113), "{status:?}");
 
     config.target_cfg.ucmm_timeout = 10_000;
@@ -123,7 +122,7 @@ async fn a_silent_target_times_out_and_a_cancelled_one_ends_at_once() {
         runner.cancel(BLOCK).unwrap();
     };
     let (ended, ()) = tokio::join!(run, cancel);
-    assert_eq!(ended.unwrap().status.status.error_id, 217);
+    assert_eq!(ended.unwrap().view.status.error_id, 217);
 }
 
 #[tokio::test]
@@ -133,7 +132,7 @@ async fn deleting_a_running_block_answers_its_run() {
     let runner = Runner::start(Arc::new(Nobody));
     runner.put(BLOCK, 1, Ok(plan(&MsgCipGeneric::product_name(&path))));
     let (ended, ()) = tokio::join!(runner.run(BLOCK, None), async { runner.remove(BLOCK) });
-    assert_eq!(ended.unwrap().status.status.error_id, 217);
+    assert_eq!(ended.unwrap().view.status.error_id, 217);
     assert_eq!(runner.view(BLOCK), None);
 }
 
@@ -167,7 +166,7 @@ async fn stopping_unregisters_the_session() {
         std::mem::take(&mut *lock(&heard))
     };
     let commands = async {
-        assert!(runner.run(BLOCK, None).await.unwrap().status.q);
+        assert!(runner.run(BLOCK, None).await.unwrap().view.q);
         runner.stop().await;
     };
     let (heard, ()) = tokio::join!(device, commands);
@@ -188,7 +187,7 @@ async fn a_panic_in_one_connection_is_survived() {
         None,
     );
     runner.put(BLOCK, 1, Ok(name_of_the_demo_device()));
-    assert!(runner.run(BLOCK, None).await.unwrap().status.q);
+    assert!(runner.run(BLOCK, None).await.unwrap().view.q);
     assert!(HAS_PANICKED.load(Ordering::SeqCst));
     runner.stop().await;
 }

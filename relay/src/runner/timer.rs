@@ -15,6 +15,7 @@ pub(super) async fn run(inner: Arc<Inner>) {
             ended = ticking => if let Err(error) = ended {
                 tracing::error!(%error, "the timer failed and is started again");
                 tokio::time::sleep(Duration::from_millis(100)).await;
+                inner.with(|state, _| state.armed = None);
             },
         }
     }
@@ -31,7 +32,7 @@ async fn tick(inner: Arc<Inner>) {
             }
         };
         tokio::select! {
-            () = due => inner.with(|state, now| state.engine.handle_timeout(now)),
+            () = due => inner.tick(),
             changed = wake.changed() => if changed.is_err() { return },
         }
     }

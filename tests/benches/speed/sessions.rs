@@ -42,7 +42,7 @@ pub(crate) async fn ours(way: Way, targets: Vec<SocketAddr>) -> Vec<Ours> {
 impl Session for Ours {
     async fn ask(&mut self) {
         let answer = self.0.run().await.expect("it is started");
-        assert!(answer.status.q, "{:?}", answer.status);
+        assert!(answer.view.q, "{:?}", answer.view);
     }
 
     /// Its session ends with the message that uses it.
