@@ -31,6 +31,13 @@ pub fn chromedriver() -> PathBuf {
     })
 }
 
+/// Wireshark's command line: `CIPDECK_TSHARK`, otherwise `tshark` in the search path.
+pub fn tshark() -> PathBuf {
+    existing(named("CIPDECK_TSHARK").or_else(|| search("tshark"))).unwrap_or_else(|| {
+        panic!("tshark is missing: run `apt-get install tshark`, or set CIPDECK_TSHARK; {HINT}")
+    })
+}
+
 /// Where screenshots are kept: `CIPDECK_SCREENSHOTS`, otherwise `target/screenshots`.
 pub fn screenshots() -> PathBuf {
     named("CIPDECK_SCREENSHOTS")

@@ -17,13 +17,15 @@ use crate::{
     workspace,
 };
 
-/// The browser and its driver, and the Python with cpppo.
+/// The browser and its driver, the Python with cpppo, and the reader of captures.
 #[derive(Debug)]
 pub(crate) struct TestTools {
     /// The WebDriver of Chromium or Chrome.
     pub(crate) chromedriver: PathBuf,
     /// A Python that can import cpppo.
     pub(crate) cpppo_python: PathBuf,
+    /// Wireshark's command line.
+    pub(crate) tshark: PathBuf,
 }
 
 /// Finds what the tests need, and installs what is missing.
@@ -35,7 +37,8 @@ pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestToo
     report.step("tool: wasm-pack", || install("wasm-pack", WASM_PACK, &["--locked"]))?;
     let chromedriver = report.step("tool: Chromium and its driver", || browser(consent))?;
     let cpppo_python = report.step("tool: cpppo, a target that is not ours", || cpppo(consent))?;
-    Ok(TestTools { chromedriver, cpppo_python })
+    let tshark = report.step("tool: tshark, a reader of captures that is not ours", || tshark(consent))?;
+    Ok(TestTools { chromedriver, cpppo_python, tshark })
 }
 
 /// Installs cargo-deny if it is missing.
@@ -79,6 +82,22 @@ fn browser(consent: Consent) -> Result<PathBuf> {
     )?;
     println!("    {}", read(program(&driver).arg("--version"))?);
     Ok(driver)
+}
+
+/// Wireshark's command line on the PATH; on Debian it can be installed.
+fn tshark(consent: Consent) -> Result<PathBuf> {
+    if let Some(named) = env::var_os("CIPDECK_TSHARK") {
+        return Ok(named.into());
+    }
+    if find("tshark").is_none() && system::is_debian() {
+        system::install(consent, &["tshark"], "A reader of captures for the tests")?;
+    }
+    let tshark = find("tshark").context(
+        "tshark is not on the PATH: install Wireshark with its command line (or name it in CIPDECK_TSHARK)",
+    )?;
+    let version = read(program(&tshark).arg("--version"))?;
+    println!("    {}", version.lines().next().unwrap_or_default());
+    Ok(tshark)
 }
 
 /// A Python environment of our own that holds cpppo.

@@ -3,6 +3,7 @@
 
 mod bad_target;
 mod blocks;
+mod capture;
 mod command_line;
 mod discover;
 mod door;
