@@ -34,7 +34,8 @@ impl ConnectionTriad {
 }
 
 /// What follows the status of a refused Forward_Open or Forward_Close: `triad | USINT remaining path (words) | 00`.
-/// A refused Unconnected_Send has the remaining path alone.
+/// A refused Unconnected_Send has no triad. Seen from a ControlLogix: `d2 00 01 01 15 03 | 01 00`
+/// (st-one-io/node-red-contrib-pccc issue 9); Wireshark calls the reply malformed without the last byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RouterRefusal {
     /// Which connection; absent for Unconnected_Send.
@@ -58,9 +59,9 @@ impl RouterRefusal {
     pub fn encode(&self, out: &mut Vec<u8>) {
         if let Some(triad) = self.triad {
             triad.encode(out);
+        }
+        if self.triad.is_some() || self.remaining_path.is_some() {
             out.extend_from_slice(&[self.remaining_path.unwrap_or(0), 0]);
-        } else {
-            out.extend(self.remaining_path);
         }
     }
 }

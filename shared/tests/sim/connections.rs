@@ -202,7 +202,7 @@ fn connected_requests_wait_their_turn_and_a_router_its_time() {
     assert_eq!(connected_of(&sent(&mut connection, at(400))).1, 2);
     assert_eq!(connection.poll_timeout(), Some(at(550)));
     let reply = connected_of(&sent(&mut connection, at(550)));
-    assert_eq!((reply.1, reply.2), (1, hex!("D2 00 01 01 04 02 07").to_vec()));
+    assert_eq!((reply.1, reply.2), (1, hex!("D2 00 01 01 04 02 07 00").to_vec()));
 }
 
 #[test]

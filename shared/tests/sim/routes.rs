@@ -74,30 +74,34 @@ fn the_refusal_of_the_target_is_not_that_of_a_router() {
 #[test]
 fn a_router_that_cannot_hand_on_says_why_and_how_much_of_the_route_was_left() {
     for (name, request, reply) in [
-        ("absent slot", routed(&[(1, "9")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 01")),
-        ("absent port", routed(&[(7, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 11 03 01")),
-        ("absent extended port", routed(&[(300, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 11 03 02")),
+        ("absent slot", routed(&[(1, "9")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 01 00")),
+        ("absent port", routed(&[(7, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 11 03 01 00")),
+        ("absent extended port", routed(&[(300, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 11 03 02 00")),
         (
             "no backplane there",
             routed(&[(2, "192.168.1.20"), (1, "0")], &PRODUCT_NAME),
-            &hex!("D2 00 01 01 11 03 01"),
+            &hex!("D2 00 01 01 11 03 01 00"),
         ),
         (
             "no Ethernet there",
             routed(&[(1, "1"), (2, "192.168.1.20")], &PRODUCT_NAME),
-            &hex!("D2 00 01 01 11 03 07"),
+            &hex!("D2 00 01 01 11 03 07 00"),
         ),
         (
             "slot behind the bridge",
             routed(&[(2, "192.168.1.10"), (1, "9")], &PRODUCT_NAME),
-            &hex!("D2 00 01 01 12 03 01"),
+            &hex!("D2 00 01 01 12 03 01 00"),
         ),
-        ("second hop left", routed(&[(1, "9"), (1, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 02")),
-        ("a node number on the Ethernet", routed(&[(2, "5")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 01")),
-        ("no address", routed(&[(2, "no.such.name")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 07")),
-        ("a slot as text", routed(&[(1, "1.2.3.4")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 05")),
-        ("its own address", routed(&[(2, "127.0.0.1")], &PRODUCT_NAME), &hex!("D2 00 01 01 18 03 06")),
-        ("no route", routed(&[], &PRODUCT_NAME), &hex!("D2 00 01 01 15 03 00")),
+        ("second hop left", routed(&[(1, "9"), (1, "0")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 02 00")),
+        (
+            "a node number on the Ethernet",
+            routed(&[(2, "5")], &PRODUCT_NAME),
+            &hex!("D2 00 01 01 12 03 01 00"),
+        ),
+        ("no address", routed(&[(2, "no.such.name")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 07 00")),
+        ("a slot as text", routed(&[(1, "1.2.3.4")], &PRODUCT_NAME), &hex!("D2 00 01 01 12 03 05 00")),
+        ("its own address", routed(&[(2, "127.0.0.1")], &PRODUCT_NAME), &hex!("D2 00 01 01 18 03 06 00")),
+        ("no route", routed(&[], &PRODUCT_NAME), &hex!("D2 00 01 01 15 03 00 00")),
     ] {
         assert_eq!(Device::default().answer(&request, at(0)), reply, "{name}");
     }
@@ -107,14 +111,14 @@ fn a_router_that_cannot_hand_on_says_why_and_how_much_of_the_route_was_left() {
 fn a_malformed_routed_request_is_refused_by_what_is_wrong_with_it() {
     let send = |data: &[u8]| [&hex!("52 02 20 06 24 01")[..], data].concat();
     for (name, data, reply) in [
-        ("port 0", &hex!("00 FA 02 00 01 00 01 00 00 00")[..], &hex!("D2 00 01 01 15 03 01")[..]),
-        ("a logical segment", &hex!("00 FA 02 00 01 00 02 00 01 01 20 01"), &hex!("D2 00 01 01 15 03 01")),
-        ("an unknown segment", &hex!("00 FA 02 00 01 00 01 00 E0 00"), &hex!("D2 00 01 01 15 03 01")),
-        ("an address that is cut", &hex!("00 FA 02 00 01 00 01 00 12 0C"), &hex!("D2 00 01 01 15 03 01")),
+        ("port 0", &hex!("00 FA 02 00 01 00 01 00 00 00")[..], &hex!("D2 00 01 01 15 03 01 00")[..]),
+        ("a logical segment", &hex!("00 FA 02 00 01 00 02 00 01 01 20 01"), &hex!("D2 00 01 01 15 03 01 00")),
+        ("an unknown segment", &hex!("00 FA 02 00 01 00 01 00 E0 00"), &hex!("D2 00 01 01 15 03 01 00")),
+        ("an address that is cut", &hex!("00 FA 02 00 01 00 01 00 12 0C"), &hex!("D2 00 01 01 15 03 01 00")),
         (
             "absent slot before an unknown segment",
             &hex!("00 FA 02 00 01 00 02 00 01 09 E0 00"),
-            &hex!("D2 00 01 01 12 03 02"),
+            &hex!("D2 00 01 01 12 03 02 00"),
         ),
         ("nothing", &[], &hex!("D2 00 13 00")),
         ("message cut", &hex!("00 FA 09 00 01 00 01 00 01 00"), &hex!("D2 00 13 00")),
@@ -138,7 +142,7 @@ fn where_nobody_answers_the_router_says_so_after_its_time_and_holds_up_nobody() 
     assert_eq!(message_of(&sent(&mut connection, at(20)))[..4], hex!("8E 00 00 00"), "overtakes");
     assert_eq!(connection.poll_timeout(), Some(at(260)));
     assert!(sent(&mut connection, at(259)).is_empty());
-    assert_eq!(message_of(&sent(&mut connection, at(260))), hex!("D2 00 01 01 04 02 07"));
+    assert_eq!(message_of(&sent(&mut connection, at(260))), hex!("D2 00 01 01 04 02 07 00"));
     assert_eq!(connection.poll_timeout(), None);
 }
 
@@ -160,7 +164,7 @@ fn a_routed_message_in_a_routed_message_is_handed_on_up_to_a_depth() {
     let wrap = |times: usize| (0..times).fold(PRODUCT_NAME.to_vec(), |inner, _| routed(&[(1, "0")], &inner));
     assert_eq!(device.answer(&wrap(8), at(0))[..4], hex!("8E 00 00 00"));
     for times in [9, 3_000] {
-        assert_eq!(refusal(&mut device, &wrap(times), at(0)), (1, vec![0x0301], vec![0]), "{times}");
+        assert_eq!(refusal(&mut device, &wrap(times), at(0)), (1, vec![0x0301], vec![0, 0]), "{times}");
     }
 }
 

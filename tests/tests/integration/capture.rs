@@ -4,7 +4,6 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use cipdeck_relay::capture::{CaptureFile, Conversation, Direction, Ends};
 use cipdeck_tests::command::{Ended, Service, cipdeck};
 use cipdeck_tests::fake_plc::{self, FakePlc};
 use cipdeck_tests::peers::{CiplinkAdapter, Cpppo};
@@ -14,9 +13,6 @@ use cipdeck_tests::tshark::Capture;
 use cipdeck_tests::{PATIENCE, block, tools};
 use reqwest::Method;
 use tempfile::TempDir;
-
-#[path = "../../../shared/tests/common/mod.rs"]
-mod golden;
 
 /// Get_Attribute_Single of the product name.
 const PRODUCT_NAME: [&str; 8] = ["--service", "14", "--class", "1", "--instance", "1", "--attribute", "7"];
@@ -137,7 +133,11 @@ async fn an_interrupted_command_leaves_a_whole_file() {
     let capture = Capture { file, port: address.port() };
     capture.is_clean().await;
     assert!(capture.packets("enip").await.len() > 20);
-    assert_eq!(capture.packets("tcp.flags.fin == 1").await.len(), 2, "the end of the connection is in the file");
+    assert_eq!(
+        capture.packets("tcp.flags.fin == 1").await.len(),
+        2,
+        "the end of the connection is in the file"
+    );
 }
 
 #[tokio::test]
@@ -198,36 +198,6 @@ async fn the_download_of_the_built_in_device_and_of_one_that_says_nothing() {
     relay.rest.run(&id).await;
     let download = Download::of(&relay, &id, folder.path()).await;
     assert_eq!(download.capture(port(&plc.path())).packets("enip").await.len(), 1, "the request alone");
-}
-
-#[tokio::test]
-async fn every_frame_of_the_suite() {
-    let at = SystemTime::now();
-    let mut file = CaptureFile::new(Vec::new()).unwrap();
-    let mut conversations: Vec<(String, Conversation)> = Vec::new();
-    let frames = golden::frames();
-    for (name, frame) in &frames {
-        let answer = ["_reply", "_refused"].into_iter().find_map(|ending| name.strip_suffix(ending));
-        let subject = answer.or_else(|| name.strip_suffix("_request")).unwrap_or(name);
-        if conversations.last().is_none_or(|(last, _)| last != subject) {
-            // Each request with its reply on a connection of its own: together they are no dialogue.
-            let number = u16::try_from(conversations.len()).unwrap();
-            let ends =
-                Ends { local: ([10, 0, 0, 1], 50_000 + number).into(), peer: ([10, 0, 0, 2], 44_818).into() };
-            let (conversation, packets) = Conversation::open(ends, at);
-            file.write(&packets).unwrap();
-            conversations.push((subject.to_owned(), conversation));
-        }
-        let (_, conversation) = conversations.last_mut().unwrap();
-        let direction = if answer.is_some() { Direction::In } else { Direction::Out };
-        file.write(&conversation.data(direction, frame, at)).unwrap();
-    }
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("golden.pcapng");
-    std::fs::write(&path, file.into_inner()).unwrap();
-    let capture = Capture { file: path, port: 44_818 };
-    capture.is_clean().await;
-    assert_eq!(capture.packets("enip").await.len(), frames.len());
 }
 
 /// A `cipdeck send --pcap` that has ended.

@@ -8,6 +8,7 @@ mod command_line;
 mod discover;
 mod door;
 mod foreign_client;
+mod frames;
 mod late_reply;
 mod limits;
 mod peers;
