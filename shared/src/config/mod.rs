@@ -8,6 +8,7 @@ mod block_id;
 mod hex;
 mod msg_cip_generic;
 mod number;
+mod profile;
 mod target_path;
 
 pub use self::block::{Block, Channel};
@@ -17,4 +18,5 @@ pub use self::msg_cip_generic::{
     CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,
 };
 pub use self::number::{NumberError, read_number};
+pub use self::profile::Profile;
 pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::block::Channel;
+use super::profile::Profile;
 
 /// The `kind` of every block today.
 pub const MSG_CIPGENERIC: &str = "MSG_CIPGENERIC";
@@ -28,6 +29,12 @@ pub struct MsgCipGeneric {
     /// Restore IN after a start of the relay; for reads only.
     #[serde(rename = "Resume", default)]
     pub resume: bool,
+    /// What kind of device the target is.
+    #[serde(rename = "Profile", default, skip_serializing_if = "is_default")]
+    pub profile: Profile,
+    /// ms; the idle session is kept alive by a read every so often. 0 = it is not; 1000..=60000.
+    #[serde(rename = "KeepAlive", default, skip_serializing_if = "is_default")]
+    pub keep_alive: i64,
     /// When to trigger.
     #[serde(rename = "CtrlCfg", default)]
     pub ctrl_cfg: CipControlCfg,
@@ -125,6 +132,8 @@ impl MsgCipGeneric {
             kind: kind(),
             channel: Channel::Controller,
             resume: false,
+            profile: Profile::Auto,
+            keep_alive: 0,
             ctrl_cfg: CipControlCfg::default(),
             app_cfg: CipAppCfg {
                 service: 14,
@@ -153,6 +162,10 @@ impl MsgCipGeneric {
 
 fn kind() -> String {
     MSG_CIPGENERIC.to_string()
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 fn member_id() -> Vec<i64> {

@@ -29,7 +29,17 @@ pub enum Input {
     /// The session is there.
     ConnectEnded,
     /// The request has been written.
-    Written,
+    Written {
+        /// The end of `ConnMsgTimeout`, which takes over from `UcmmTimeout` for a connected message.
+        deadline: Option<Instant>,
+    },
+    /// A frame came in that does not answer the request.
+    ReplyDropped,
+    /// Completing the message closes the CIP connection.
+    Closing {
+        /// And with it the session.
+        session: bool,
+    },
     /// The device answered with success and this data.
     Succeeded {
         /// Reply data.
@@ -67,6 +77,10 @@ pub struct MsgBlock {
     deadline: Instant,
     triggered_at: Instant,
     written_at: Option<Instant>,
+    /// CIPCONN and EIPSESS, shown when the message has ended.
+    closing: u16,
+    /// Frames that came in and did not answer the request.
+    dropped: u64,
     reply_us: Option<u64>,
     elapsed_us: Option<u64>,
 }
@@ -103,16 +117,26 @@ impl MsgBlock {
                 self.phase = Phase::Buffered;
                 None
             }
-            (Phase::Buffered | Phase::Connecting, Input::Written) => {
+            (Phase::Buffered | Phase::Connecting, Input::Written { deadline }) => {
                 self.phase = Phase::Sent;
                 self.written_at = Some(now);
+                self.deadline = deadline.unwrap_or(self.deadline);
                 self.clear(StatusBits::EW);
                 self.set(StatusBits::ST);
                 None
             }
             // Written again after the target did not know the session: it cannot have acted before.
-            (Phase::Sent, Input::Written) => {
+            (Phase::Sent, Input::Written { deadline }) => {
                 self.written_at = Some(now);
+                self.deadline = deadline.unwrap_or(self.deadline);
+                None
+            }
+            (Phase::Sent, Input::ReplyDropped) => {
+                self.dropped += 1;
+                None
+            }
+            (Phase::Sent, Input::Closing { session }) => {
+                self.closing = StatusBits::CIPCONN | if session { StatusBits::EIPSESS } else { 0 };
                 None
             }
             (Phase::Sent, Input::Succeeded { data, size }) => Some(self.succeed(data, size, now)),
@@ -196,19 +220,22 @@ impl MsgBlock {
 
     /// EN, EW and ST freeze as they are.
     fn fail(&mut self, failure: &Failure, now: Instant) -> Effect {
-        if matches!(failure, Failure::RefusedByDevice(..)) {
+        if failure.is_answer() {
             self.reply_us = self.written_at.map(|written| now.micros_since(written));
         }
         let (error_id, sub_error_id, ext_error_id) = failure.error_ids(self.phase);
         let status_bits = self.status.status_bits;
         self.status = CipStatus { error: true, error_id, sub_error_id, ext_error_id, status_bits };
-        self.cause = Some(failure.cause(self.phase));
+        let cause = failure.cause(self.phase);
+        self.cause =
+            Some(if *failure == Failure::Timeout { cause.after_dropping(self.dropped) } else { cause });
         self.set(StatusBits::ER);
         self.end(Phase::Failed, now)
     }
 
     fn end(&mut self, phase: Phase, now: Instant) -> Effect {
         self.phase = phase;
+        self.set(self.closing);
         self.runs += 1;
         self.elapsed_us = Some(now.micros_since(self.triggered_at));
         if !self.input {
@@ -267,6 +294,7 @@ mod tests {
     use alloc::vec;
 
     const DEADLINE: Instant = Instant(3_000_000);
+    const WRITTEN: Input = Input::Written { deadline: None };
     const TRIGGER: Input = Input::Trigger { deadline: DEADLINE };
 
     fn reply(length: usize) -> Input {
@@ -288,8 +316,8 @@ mod tests {
     /// One row per line of the timing tables: the inputs, then the bits and the phase.
     #[test]
     fn the_timing_tables_hold_row_by_row() {
-        use Input::{BufferGranted, Cancel, ConnectEnded, ConnectStarted, Fall, Rise, Written};
-        let sent = [Rise, TRIGGER, BufferGranted, Written];
+        use Input::{BufferGranted, Cancel, ConnectEnded, ConnectStarted, Fall, Rise};
+        let sent = [Rise, TRIGGER, BufferGranted, WRITTEN];
         let with = |more: &[Input]| [&sent[..], more].concat();
         let rows: [(&str, Vec<Input>, u16, Phase); 24] = [
             ("step 1: the rung is TRUE: EN, all others 0", vec![Rise, TRIGGER], 1, Phase::Waiting),
@@ -340,11 +368,11 @@ mod tests {
 
     #[test]
     fn failures_have_the_numbers_of_the_manual_and_a_cause() {
-        use Input::{BufferGranted, ConnectStarted, Rise, Written};
+        use Input::{BufferGranted, ConnectStarted, Rise};
         let waiting = vec![Rise, TRIGGER];
         let buffered = [&waiting[..], &[BufferGranted]].concat();
         let connecting = [&buffered[..], &[ConnectStarted]].concat();
-        let sent = [&buffered[..], &[Written]].concat();
+        let sent = [&buffered[..], &[WRITTEN]].concat();
         let unreachable = Failure::NotConnected(ConnectError::Unreachable, String::new());
         let rows = [
             ("no buffer in time", waiting.clone(), None, 55, 112, 9, CauseKind::Timeout, false),
@@ -423,7 +451,7 @@ mod tests {
 
     #[test]
     fn a_refusal_keeps_every_status_word() {
-        let block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, Input::Written, refused()]);
+        let block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, WRITTEN, refused()]);
         assert_eq!(
             (block.status.error_id, block.status.sub_error_id, block.status.ext_error_id),
             (224, 5, 0x1234)
@@ -433,7 +461,7 @@ mod tests {
 
     #[test]
     fn a_reply_that_does_not_fit_is_an_error_although_the_device_has_acted() {
-        let mut block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, Input::Written]);
+        let mut block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, WRITTEN]);
         block.step(Input::Succeeded { data: vec![0; 5], size: 4 }, Instant(100));
         assert_eq!((block.status.error_id, block.status.sub_error_id, block.q), (33, 48, false));
         assert!(block.res_data.is_empty() && block.cause.unwrap().has_acted);
@@ -441,7 +469,7 @@ mod tests {
 
     #[test]
     fn success_sets_q_and_a_retrigger_clears_it() {
-        let mut block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, Input::Written, reply(2)]);
+        let mut block = after(&[Input::Rise, TRIGGER, Input::BufferGranted, WRITTEN, reply(2)]);
         assert_eq!((block.q, &block.res_data[..], block.runs), (true, &[7, 7][..], 1));
         assert_eq!((block.reply_us, block.elapsed_us), (Some(10), Some(30)));
         assert_eq!(block.step(TRIGGER, Instant(100)), Some(Effect::Enqueue));

@@ -10,6 +10,9 @@ pub const CONTROLLER_BUFFERS: usize = 4;
 /// Sessions of the controller. 2080-RM001D p. 182: at most 16 EtherNet/IP client connections.
 pub const CONTROLLER_SESSIONS: usize = 16;
 
+/// Class 3 connections of the controller. 2080-RM001D p. 182: at most 16 CIP class 3 client connections.
+pub const CONTROLLER_CONNECTIONS: usize = 16;
+
 /// A Com queue of fixed size and an unlimited Wait queue, first come first served.
 #[derive(Debug)]
 pub struct Buffers {

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use crate::config::{BlockId, Target};
 
 use super::block::BlockView;
+use super::target::TargetView;
 
 /// One TCP connection or the attempt at one. Never used again, so that nothing stale can be taken for new.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -52,6 +53,13 @@ pub enum Event {
         block: BlockId,
         /// How it looks now; its edges are the new ones only.
         view: Box<BlockView>,
+    },
+    /// A target looks different.
+    Target {
+        /// Which.
+        target: Target,
+        /// How it looks now; `None` when no block needs it any more.
+        view: Option<Box<TargetView>>,
     },
     /// A message has ended with DN or ER; a run's IN is still TRUE in `view`.
     Finished {

@@ -5,13 +5,24 @@ use alloc::vec::Vec;
 
 use crate::wire::{DecodeError, EncapsulationStatus, GeneralStatus};
 
-use super::status::{Cause, CauseKind, Phase};
+use super::status::{Cause, CauseKind, Phase, RefusedBy};
 
 /// Why a message failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// The device answered with a CIP error and all words of its additional status.
     RefusedByDevice(GeneralStatus, Vec<u16>),
+    /// A router or the Connection Manager refused it before it reached its object.
+    RefusedOnTheWay {
+        /// Who.
+        by: RefusedBy,
+        /// Its general status.
+        status: GeneralStatus,
+        /// All words of its additional status.
+        words: Vec<u16>,
+        /// Words of the path that were left.
+        remaining_path: Option<u8>,
+    },
     /// No TCP connection: the reason and what the operating system said.
     NotConnected(ConnectError, String),
     /// RegisterSession was refused.
@@ -50,11 +61,19 @@ pub enum ConnectError {
     Unresolved,
 }
 
+/// "Unconnected request timed out": the target behind the router may have got it.
+const NO_ANSWER_BEHIND_ROUTER: u16 = 0x0204;
+
 impl Failure {
+    /// Whether the target, or somebody on the way, has answered.
+    pub(super) const fn is_answer(&self) -> bool {
+        matches!(self, Self::RefusedByDevice(..) | Self::RefusedOnTheWay { by: RefusedBy::Router, .. })
+    }
+
     /// `ErrorID`, `SubErrorID`, `ExtErrorID` in a phase. Codes: `data/micro800_error_ids.tsv`.
     pub(super) fn error_ids(&self, phase: Phase) -> (u16, u16, u16) {
         match self {
-            Self::RefusedByDevice(status, words) => {
+            Self::RefusedByDevice(status, words) | Self::RefusedOnTheWay { status, words, .. } => {
                 (224, status.0.into(), words.first().copied().unwrap_or(0))
             }
             Self::Timeout => (55, timeout_in(phase), 0),
@@ -78,6 +97,13 @@ impl Failure {
             Self::RefusedByDevice(_, words) => {
                 Cause { additional: words.clone(), ..Cause::new(CauseKind::RefusedByDevice) }
             }
+            Self::RefusedOnTheWay { by, words, remaining_path, .. } => Cause {
+                by: Some(*by),
+                remaining_path: *remaining_path,
+                additional: words.clone(),
+                may_have_acted: *by == RefusedBy::Router && words.first() == Some(&NO_ANSWER_BEHIND_ROUTER),
+                ..Cause::new(CauseKind::RefusedByDevice)
+            },
             Self::NotConnected(error, detail) => {
                 let what = match error {
                     ConnectError::Refused => CauseKind::Refused,

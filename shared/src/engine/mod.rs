@@ -13,20 +13,24 @@
 mod block;
 mod channel;
 mod client;
+mod connection;
 mod entry;
 mod event;
 mod failure;
 mod machine;
 mod session;
 mod status;
+mod target;
 pub mod time;
 mod trigger;
 
 pub use self::block::{BlockView, Effect, Input, MsgBlock};
-pub use self::channel::{Buffers, CONTROLLER_BUFFERS, CONTROLLER_SESSIONS};
+pub use self::channel::{Buffers, CONTROLLER_BUFFERS, CONTROLLER_CONNECTIONS, CONTROLLER_SESSIONS};
+pub use self::connection::Originator;
 pub use self::event::{Event, Exchange, LinkId, Wants};
 pub use self::failure::{ConnectError, Failure};
 pub use self::machine::{CommandError, Engine};
-pub use self::status::{Cause, CauseKind, CipStatus, Phase, StatusBits};
+pub use self::status::{Cause, CauseKind, CipStatus, Phase, RefusedBy, StatusBits};
+pub use self::target::{ConnectionView, TargetState, TargetView};
 pub use self::time::{Instant, Millis};
 pub use self::trigger::Trigger;

@@ -108,6 +108,12 @@ pub struct Cause {
     /// The byte at which a reply stopped to make sense, for `malformed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub byte: Option<usize>,
+    /// Who refused, for `refused_by_device` where it was not the object that was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<RefusedBy>,
+    /// Words of the route or path that were left where it was refused, if the router says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remaining_path: Option<u8>,
     /// All words of the additional status, for `refused_by_device`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub additional: Vec<u16>,
@@ -125,10 +131,32 @@ impl Cause {
             has_acted: false,
             status: None,
             byte: None,
+            by: None,
+            remaining_path: None,
             additional: Vec::new(),
             detail: None,
         }
     }
+
+    /// A timeout during which frames came in that did not answer the request.
+    pub(super) fn after_dropping(self, frames: u64) -> Self {
+        let told = || {
+            alloc::format!(
+                "{frames} replies came that were not for this request (another sender context, connection or sequence count)"
+            )
+        };
+        Self { detail: (frames > 0).then(told), ..self }
+    }
+}
+
+/// Who refused a message before it reached its object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RefusedBy {
+    /// A router on the way: its Connection Manager answers Unconnected_Send itself.
+    Router,
+    /// The Connection Manager that was to open the connection.
+    ForwardOpen,
 }
 
 /// What happened. New kinds may appear: a reader keeps the word of one it does not know.

@@ -4,19 +4,20 @@ use alloc::string::ToString;
 use alloc::vec::Vec;
 
 use crate::config::{
-    CipAppCfg, CipControlCfg, CipTargetCfg, Extra, Host, MSG_CIPGENERIC, MsgCipGeneric, Target, TargetPath,
-    read_hex,
+    CONTROLLER_HOPS, CipAppCfg, CipControlCfg, CipTargetCfg, Extra, Host, MSG_CIPGENERIC, MsgCipGeneric,
+    Profile, Target, TargetPath, read_hex,
 };
 use crate::table::Access;
 use crate::wire::{Epath, MessageRouterRequest, ServiceCode};
 
 use super::finding::{Field, Finding, Severity};
 use super::limits::{
-    CONN_MSG_TIMEOUT, MAX_NAME, MAX_REQUEST_DATA, MAX_RESPONSE_DATA, TimeoutRange, UCMM_TIMEOUT,
+    CONN_MSG_TIMEOUT, KEEP_ALIVE, MAX_NAME, MAX_REQUEST_DATA, MAX_RESPONSE_DATA, TimeoutRange, UCMM_TIMEOUT,
     USUAL_MESSAGE,
 };
-use super::rule::{Feature, Rule};
-use super::{App, TriggerType};
+use super::routed::ends_at_own_slot;
+use super::rule::Rule;
+use super::{App, ConnectionPlan, TargetPlan, TriggerType};
 
 #[derive(Default)]
 pub(super) struct Checks {
@@ -91,20 +92,28 @@ impl Checks {
         Some(ids)
     }
 
-    pub(super) fn target_cfg(&mut self, cfg: &CipTargetCfg) -> Option<(Target, u32)> {
-        let target = self.path(&cfg.path);
-        if self.number::<u8>(Field::CipConnMode, cfg.cip_conn_mode, 0, 1) == Some(1) {
-            self.error(Field::CipConnMode, Rule::NotAvailable(Feature::Class3));
-        } else if cfg.conn_close {
+    pub(super) fn target_cfg(&mut self, cfg: &CipTargetCfg, profile: Profile) -> Option<TargetPlan> {
+        let path = self.path(&cfg.path, profile);
+        let mode = self.number::<u8>(Field::CipConnMode, cfg.cip_conn_mode, 0, 1);
+        if mode == Some(0) && cfg.conn_close {
             self.note(Field::ConnClose, Rule::ConnCloseUnconnected);
         }
         let ucmm = self.timeout(Field::UcmmTimeout, cfg.ucmm_timeout, UCMM_TIMEOUT);
-        self.timeout(Field::ConnMsgTimeout, cfg.conn_msg_timeout, CONN_MSG_TIMEOUT);
+        let connected = self.timeout(Field::ConnMsgTimeout, cfg.conn_msg_timeout, CONN_MSG_TIMEOUT);
         self.unknown("TargetCfg.", &cfg.extra);
-        target.zip(ucmm)
+        let connection = ConnectionPlan { timeout_ms: connected?, close: cfg.conn_close };
+        Some(TargetPlan {
+            path: path?,
+            ucmm_timeout_ms: ucmm?,
+            connection: (mode? == 1).then_some(connection),
+        })
     }
 
-    fn path(&mut self, text: &str) -> Option<Target> {
+    pub(super) fn keep_alive(&mut self, config: &MsgCipGeneric) -> Option<u32> {
+        self.timeout(Field::KeepAlive, config.keep_alive, KEEP_ALIVE)
+    }
+
+    fn path(&mut self, text: &str, profile: Profile) -> Option<TargetPath> {
         let path: TargetPath = match text.parse() {
             Ok(path) => path,
             Err(error) => {
@@ -120,11 +129,13 @@ impl Checks {
                 self.warning(Field::Path, Rule::HostName);
             }
         }
-        if !path.route.is_empty() {
-            self.error(Field::Path, Rule::NotAvailable(Feature::Route));
-            return None;
+        if path.hops() > CONTROLLER_HOPS {
+            self.warning(Field::Path, Rule::ThreeHops);
         }
-        Some(path.target)
+        if profile == Profile::Micro800 && ends_at_own_slot(&path.route) {
+            self.note(Field::Path, Rule::OwnSlot);
+        }
+        Some(path)
     }
 
     fn timeout(&mut self, field: Field, value: i64, range: TimeoutRange) -> Option<u32> {

@@ -41,6 +41,8 @@ pub enum Field {
     Kind,
     /// `Resume`
     Resume,
+    /// `KeepAlive`
+    KeepAlive,
     /// `CtrlCfg.Cancel`
     Cancel,
     /// `CtrlCfg.TriggerType`
@@ -87,6 +89,7 @@ impl fmt::Display for Field {
             Self::Name => "name",
             Self::Kind => "kind",
             Self::Resume => "Resume",
+            Self::KeepAlive => "KeepAlive",
             Self::Cancel => "CtrlCfg.Cancel",
             Self::TriggerType => "CtrlCfg.TriggerType",
             Self::StrMode => "CtrlCfg.StrMode",
@@ -114,7 +117,7 @@ impl Finding {
     /// The `ErrorID` and `SubErrorID` that the controller would give. Confirmed sub-codes of 33 only
     /// (2080-RM001D p. 179); 33 alone where the manual has none.
     pub const fn error_ids(&self) -> Option<(u16, Option<u16>)> {
-        if !matches!(self.severity, Severity::Error) || matches!(self.rule, Rule::NotAvailable(_)) {
+        if !matches!(self.severity, Severity::Error) {
             return None;
         }
         let sub = match (&self.field, &self.rule) {
@@ -125,7 +128,9 @@ impl Finding {
             (Field::Path, _) => 49,
             (Field::Service, _) => 50,
             (Field::ReqData | Field::ReqLength, Rule::TooMuchData { .. } | Rule::OutOfRange { .. }) => 51,
-            (Field::Name | Field::Kind | Field::Resume | Field::Unknown(_), _) => return None,
+            (Field::Name | Field::Kind | Field::Resume | Field::KeepAlive | Field::Unknown(_), _) => {
+                return None;
+            }
             _ => return Some((33, None)),
         };
         Some((33, Some(sub)))

@@ -26,5 +26,8 @@ pub struct TimeoutRange {
 /// `UcmmTimeout`. Document 13032001 on Micro800 CIP messages, CIPTARGETCFG.
 pub const UCMM_TIMEOUT: TimeoutRange = TimeoutRange { default: 3_000, min: 250, max: 10_000 };
 
+/// `KeepAlive`. Our own limits: more often is polling, which a cyclic block does.
+pub const KEEP_ALIVE: TimeoutRange = TimeoutRange { default: 0, min: 1_000, max: 60_000 };
+
 /// `ConnMsgTimeout`. Document 13032001 on Micro800 CIP messages, CIPTARGETCFG.
 pub const CONN_MSG_TIMEOUT: TimeoutRange = TimeoutRange { default: 10_000, min: 800, max: 10_000 };

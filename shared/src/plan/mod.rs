@@ -3,29 +3,54 @@
 mod checks;
 mod finding;
 pub mod limits;
+mod routed;
 mod rule;
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::{Channel, MsgCipGeneric, Target};
+use crate::config::{Channel, MsgCipGeneric, Profile, Target, TargetPath};
 use crate::table::{self, Access};
 use crate::wire::{Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
 use self::checks::Checks;
 pub use self::finding::{Field, Finding, Severity};
-pub use self::rule::{Feature, Rule};
+pub use self::routed::Routed;
+use self::routed::Routes;
+pub use self::rule::Rule;
 
 /// A message that can be sent. Exists only for a configuration without errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MessagePlan {
     request: MessageRouterRequest,
+    bytes: Arc<[u8]>,
+    routes: Routes,
     target: Target,
     channel: Channel,
+    profile: Profile,
     trigger: TriggerType,
     ucmm_timeout_ms: u32,
+    connection: Option<ConnectionPlan>,
+    keep_alive_ms: u32,
     res_data_size: u16,
     access: Access,
     resume: bool,
+}
+
+/// A message over a class 3 connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConnectionPlan {
+    /// `ConnMsgTimeout` in ms, already in its range: from sending to the reply, and how long an idle connection stays.
+    pub timeout_ms: u32,
+    /// `ConnClose`: the connection is closed when the message completes.
+    pub close: bool,
+}
+
+/// CIPTARGETCFG, all in range.
+struct TargetPlan {
+    path: TargetPath,
+    ucmm_timeout_ms: u32,
+    connection: Option<ConnectionPlan>,
 }
 
 /// When a block whose IN is TRUE triggers.
@@ -46,20 +71,28 @@ impl MessagePlan {
         checks.block(config);
         let trigger = checks.ctrl_cfg(&config.ctrl_cfg);
         let app = checks.app_cfg(&config.app_cfg);
-        let target = checks.target_cfg(&config.target_cfg);
+        let target = checks.target_cfg(&config.target_cfg, config.profile);
+        let keep_alive = checks.keep_alive(config);
         let data = checks.request_data(config);
         let res_data_size = checks.res_data_size(config);
         let access = app.as_ref().map(|app| table::classify(app.service, app.class));
         checks.resume(config, access);
         let request = app.zip(data).and_then(|(app, data)| checks.request(app.service, app.path(), data));
         let plan = || {
-            let (target, ucmm_timeout_ms) = target?;
+            let TargetPlan { path, ucmm_timeout_ms, connection } = target?;
+            let request = request?;
             Some(Self {
-                request: request?,
-                target,
+                // A path of 80 characters and 490 bytes of data always fit.
+                routes: Routes::new(&request, &path.route, ucmm_timeout_ms).ok()?,
+                bytes: request.bytes().into(),
+                request,
+                target: path.target,
                 channel: config.channel,
+                profile: config.profile,
                 trigger: trigger?,
                 ucmm_timeout_ms,
+                connection,
+                keep_alive_ms: keep_alive?,
                 res_data_size: res_data_size?,
                 access: access?,
                 resume: config.resume,
@@ -74,6 +107,32 @@ impl MessagePlan {
     /// Service, path and data.
     pub const fn request(&self) -> &MessageRouterRequest {
         &self.request
+    }
+
+    /// Message router bytes: what goes out over a connection, and what the target's object gets.
+    pub fn bytes(&self) -> &Arc<[u8]> {
+        &self.bytes
+    }
+
+    /// The bytes that go out unconnected, and along which route, for a kind of device: the request itself, or an
+    /// Unconnected_Send around it if there is a route.
+    pub fn routed(&self, profile: Profile) -> &Routed {
+        self.routes.of(profile)
+    }
+
+    /// What the target is said to be.
+    pub const fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    /// How it is sent over a class 3 connection; `None` for an unconnected message.
+    pub const fn connection(&self) -> Option<ConnectionPlan> {
+        self.connection
+    }
+
+    /// ms between reads that keep an idle session alive; 0 = none.
+    pub const fn keep_alive_ms(&self) -> u32 {
+        self.keep_alive_ms
     }
 
     /// Where it goes.

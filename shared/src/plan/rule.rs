@@ -38,8 +38,10 @@ pub enum Rule {
     },
     /// The path has a name; a controller takes addresses only.
     HostName,
-    /// Not built yet; never sent another way.
-    NotAvailable(Feature),
+    /// A controller takes two hops.
+    ThreeHops,
+    /// The device takes no route to its own slot: the last hop is not sent.
+    OwnSlot,
     /// The request data is not readable as hexadecimal.
     Hex {
         /// Character position, counted from 0.
@@ -97,18 +99,9 @@ pub enum Rule {
     ConnCloseUnconnected,
 }
 
-/// What this version cannot do yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feature {
-    /// A second hop in the path.
-    Route,
-    /// `CipConnMode` 1.
-    Class3,
-}
-
 impl Rule {
     /// Every key that [`Self::key`] can return: the page has a text for each.
-    pub const KEYS: [&'static str; 33] = [
+    pub const KEYS: [&'static str; 32] = [
         "out_of_range",
         "missing",
         "text_too_long",
@@ -125,9 +118,8 @@ impl Rule {
         "path_bad_slot",
         "tcp_port",
         "host_name",
-        "not_available",
-        "not_available_route",
-        "not_available_class_3",
+        "three_hops",
+        "own_slot",
         "hex_not_hex",
         "hex_odd_digits",
         "too_much_data",
@@ -146,10 +138,7 @@ impl Rule {
 
     /// The rule's stable name in JSON.
     pub const fn name(&self) -> &'static str {
-        match self {
-            Self::NotAvailable(_) => "not_available",
-            _ => self.key(),
-        }
+        self.key()
     }
 
     /// The key of the rule's text.
@@ -173,8 +162,8 @@ impl Rule {
             },
             Self::TcpPort { .. } => "tcp_port",
             Self::HostName => "host_name",
-            Self::NotAvailable(Feature::Route) => "not_available_route",
-            Self::NotAvailable(Feature::Class3) => "not_available_class_3",
+            Self::ThreeHops => "three_hops",
+            Self::OwnSlot => "own_slot",
             Self::Hex { kind: HexErrorKind::NotHex(_), .. } => "hex_not_hex",
             Self::Hex { kind: HexErrorKind::OddDigits, .. } => "hex_odd_digits",
             Self::TooMuchData { .. } => "too_much_data",
@@ -233,11 +222,9 @@ impl fmt::Display for Rule {
             Self::Path(error) => f.write_str(path_text(*error)),
             Self::TcpPort { port } => write!(f, "TCP port {port}: a controller always uses 44818"),
             Self::HostName => f.write_str("a controller takes an IP address here, not a name"),
-            Self::NotAvailable(Feature::Route) => {
-                f.write_str("a second hop (route) is not available yet; nothing is sent")
-            }
-            Self::NotAvailable(Feature::Class3) => {
-                f.write_str("class 3 connections are not available yet; nothing is sent")
+            Self::ThreeHops => f.write_str("three hops: a controller takes two"),
+            Self::OwnSlot => {
+                f.write_str("a Micro800 takes no route to its own slot: the hop 1,0 is not sent")
             }
             Self::Hex { position, kind: HexErrorKind::NotHex(found) } => {
                 write!(f, "'{found}' at character {} is not a hexadecimal digit", position + 1)

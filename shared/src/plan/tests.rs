@@ -105,7 +105,7 @@ fn one_finding_never_hides_another() {
 fn errors_carry_the_numbers_of_the_controller() {
     type Change = fn(&mut MsgCipGeneric);
     type Ids = Option<(u16, Option<u16>)>;
-    let rows: [(Change, Ids); 11] = [
+    let rows: [(Change, Ids); 9] = [
         (|c| c.app_cfg.service = 300, Some((33, Some(50)))),
         (|c| c.app_cfg.class = 0, Some((33, Some(43)))),
         (|c| c.app_cfg.member_cnt = 4, Some((33, Some(43)))),
@@ -115,8 +115,6 @@ fn errors_carry_the_numbers_of_the_controller() {
         (|c| c.target_cfg.cip_conn_mode = 2, Some((33, Some(36)))),
         (|c| c.req_data = "00".repeat(491), Some((33, Some(51)))),
         (|c| c.req_length = Some(1), Some((33, Some(48)))),
-        (|c| c.target_cfg.path = "4,10.0.0.1,1,0".into(), None),
-        (|c| c.target_cfg.cip_conn_mode = 1, None),
     ];
     for (change, ids) in rows {
         let mut config = block();
@@ -127,11 +125,57 @@ fn errors_carry_the_numbers_of_the_controller() {
 }
 
 #[test]
-fn what_is_not_built_yet_is_never_sent_another_way() {
-    let route = one(|config| config.target_cfg.path = "4,192.168.1.100,1,0".into());
-    assert_eq!(route, row("TargetCfg.Path", Severity::Error, "not_available"));
-    let class_3 = one(|config| config.target_cfg.cip_conn_mode = 1);
-    assert_eq!(class_3, row("TargetCfg.CipConnMode", Severity::Error, "not_available"));
+fn a_direct_message_is_sent_as_it_is_and_a_routed_one_by_unconnected_send() {
+    let mut config = block();
+    let direct = MessagePlan::parse(&config).0.unwrap();
+    assert_eq!(direct.routed(Profile::Auto).message(), direct.request().bytes());
+    config.target_cfg.path = "4,192.168.1.100,1,0".into();
+    let routed = MessagePlan::parse(&config).0.unwrap();
+    // layout of pycomm3 wrap_unconnected_send; UcmmTimeout 3000 ms is 188 x 16 ms
+    let golden = hex!("52 02 20 06 24 01 04 BC 08 00 0E 03 20 01 24 01 30 07 01 00 01 00");
+    assert_eq!(routed.routed(Profile::Logix).message(), golden);
+    assert_eq!(routed.routed(Profile::Micro800), direct.routed(Profile::Auto), "no route to its own slot");
+    config.target_cfg.path = "4,192.168.1.100,2,10.0.0.9,1,0".into();
+    let far = MessagePlan::parse(&config).0.unwrap();
+    assert_eq!(far.routed(Profile::Micro800).route().bytes(), b"\x12\x0810.0.0.9");
+}
+
+#[test]
+fn a_route_that_a_controller_would_not_take_is_told() {
+    let far = one(|config| config.target_cfg.path = "4,192.168.1.100,1,3,2,192.168.1.20".into());
+    assert_eq!(far, row("TargetCfg.Path", Severity::Warning, "three_hops"));
+    let own = one(|config| {
+        config.target_cfg.path = "4,192.168.1.100,1,0".into();
+        config.profile = Profile::Micro800;
+    });
+    assert_eq!(own, row("TargetCfg.Path", Severity::Note, "own_slot"));
+}
+
+#[test]
+fn a_connected_message_has_the_timeout_of_connections() {
+    for (given, used) in [(0, 10_000), (1, 800), (800, 800), (9_999, 9_999), (20_000, 10_000)] {
+        let mut config = block();
+        config.target_cfg.cip_conn_mode = 1;
+        config.target_cfg.conn_msg_timeout = given;
+        config.target_cfg.conn_close = true;
+        let plan = MessagePlan::parse(&config).0.unwrap();
+        assert_eq!(plan.connection(), Some(ConnectionPlan { timeout_ms: used, close: true }), "{given}");
+    }
+    assert_eq!(MessagePlan::parse(&block()).0.unwrap().connection(), None);
+}
+
+#[test]
+fn a_keep_alive_is_off_or_not_too_often() {
+    for (given, used) in [(0, 0), (1, 1_000), (5_000, 5_000), (70_000, 60_000)] {
+        let mut config = block();
+        config.keep_alive = given;
+        let (plan, findings) = MessagePlan::parse(&config);
+        assert_eq!(
+            (plan.unwrap().keep_alive_ms(), findings.len()),
+            (used, usize::from(i64::from(used) != given))
+        );
+    }
+    assert_eq!(one(|config| config.keep_alive = -1), row("KeepAlive", Severity::Error, "out_of_range"));
 }
 
 #[test]
@@ -205,7 +249,7 @@ fn a_trigger_type_over_255_is_a_note() {
 
 #[test]
 fn every_rule_has_a_key_that_is_listed() {
-    for rule in [Rule::Missing, Rule::Reserved, Rule::NotAvailable(Feature::Class3), Rule::OverUsint] {
+    for rule in [Rule::Missing, Rule::Reserved, Rule::ThreeHops, Rule::OverUsint] {
         assert!(Rule::KEYS.contains(&rule.key()) && Rule::KEYS.contains(&rule.name()));
     }
 }

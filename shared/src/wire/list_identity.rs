@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
-use super::common_packet::{Item, ItemType};
-use super::cursor::{DecodeError, Reader};
+use super::common_packet::{CommonPacketFormat, Item, ItemType};
+use super::cursor::{DecodeError, DecodeErrorKind, Reader};
+use super::encapsulation::HEADER_SIZE;
 use super::value::ShortString;
 
 /// Who a device is, as it says on the wire.
@@ -85,6 +86,19 @@ impl ListIdentityItem {
         };
         reader.finish()?;
         Ok(item)
+    }
+
+    /// Decodes the data of a `ListIdentity` reply frame: the first identity item. Positions are counted from the start of
+    /// the frame.
+    pub fn decode_reply(data: &[u8]) -> Result<Self, DecodeError> {
+        let mut reader = Reader::starting_at(data, HEADER_SIZE);
+        let packet = CommonPacketFormat::read(&mut reader)?;
+        let missing = reader.error(DecodeErrorKind::Unexpected {
+            field: "items without an identity: count",
+            found: packet.count().into(),
+        });
+        let item = packet.find(ItemType::ListIdentity).ok_or(missing)?;
+        Self::decode(item.data).map_err(|error| error.shifted(item.at))
     }
 
     /// Appends item count 1 and the item: the whole data of a reply.

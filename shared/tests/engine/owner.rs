@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use cipdeck_shared::config::{BlockId, MsgCipGeneric, Target};
 use cipdeck_shared::engine::{
-    BlockView, CauseKind, CommandError, ConnectError, Engine, Event, Exchange, Instant, LinkId, Wants,
+    BlockView, CauseKind, CommandError, ConnectError, Engine, Event, Exchange, Instant, LinkId, TargetView,
+    Wants,
 };
 use cipdeck_shared::plan::MessagePlan;
 use cipdeck_shared::wire::{
@@ -31,6 +32,8 @@ pub(crate) struct Owner {
     pub(crate) bits: BTreeMap<BlockId, Vec<u16>>,
     /// How each block looked when it was told last.
     pub(crate) told: BTreeMap<BlockId, BlockView>,
+    /// How each target looked when it was told last.
+    pub(crate) targets: BTreeMap<Target, Option<TargetView>>,
 }
 
 impl Owner {
@@ -49,6 +52,7 @@ impl Owner {
             finished: Vec::new(),
             bits: BTreeMap::new(),
             told: BTreeMap::new(),
+            targets: BTreeMap::new(),
         }
     }
 
@@ -87,6 +91,9 @@ impl Owner {
                 Event::Changed { block, view } => {
                     self.bits.entry(block).or_default().extend(view.edges.iter().map(|edge| edge.1.0));
                     self.told.insert(block, *view);
+                }
+                Event::Target { target, view } => {
+                    self.targets.insert(target, view.map(|view| *view));
                 }
                 Event::Finished { block, view, exchange, .. } => {
                     self.finished.push((block, *view, *exchange));

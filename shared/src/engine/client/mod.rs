@@ -1,20 +1,25 @@
-//! One endpoint: its TCP connection, its session, and one request outstanding at a time.
+//! One endpoint: its TCP connection, its session, its class 3 connections, and one request outstanding at a time.
 
+mod housekeeping;
+mod next;
 mod replies;
+mod view;
 
 use alloc::collections::VecDeque;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::BlockId;
+use crate::config::{BlockId, Profile};
 use crate::plan::MessagePlan;
-use crate::wire::{SenderContext, UnconnectedMessage};
+use crate::wire::{ConnectedMessage, SenderContext, UnconnectedMessage};
 
 use crate::engine::block::Input;
+use crate::engine::connection::{Connection, Opening, Originator};
 use crate::engine::event::{LinkId, Wants};
 use crate::engine::failure::{ConnectError, Failure};
-use crate::engine::session::Session;
+use crate::engine::session::{Expected, Session};
+use crate::engine::status::{Cause, Phase};
 use crate::engine::time::{Instant, Millis};
 
 /// First delay after a failed connect; doubled up to [`MAX_BACK_OFF`].
@@ -22,9 +27,6 @@ const MIN_BACK_OFF: Millis = Millis(250);
 
 /// Longest delay between attempts of cyclic messages.
 const MAX_BACK_OFF: Millis = Millis(5_000);
-
-/// How long the target has for closing the connection after UnRegisterSession.
-const CLOSING_TIME: Millis = Millis(500);
 
 /// A message on its way to this endpoint.
 #[derive(Clone, Debug)]
@@ -42,8 +44,6 @@ pub(super) struct Job {
 pub(super) enum Output {
     Connect(LinkId),
     Disconnect(LinkId),
-    /// The target closes the connection; [`Client::drop_closing`] is due then.
-    Closing(LinkId, Instant),
     Transmit(LinkId),
     Wants(Wants),
     Block(BlockId, Input),
@@ -56,6 +56,7 @@ pub(super) enum Output {
 pub(super) struct Context<'a> {
     pub(super) now: Instant,
     pub(super) next_link: &'a mut u64,
+    pub(super) originator: &'a mut Originator,
     pub(super) out: &'a mut VecDeque<Output>,
 }
 
@@ -66,6 +67,7 @@ pub(super) struct Client {
     /// The block and shot whose permission has been asked for.
     asking: Option<(BlockId, u64)>,
     outstanding: Option<Outstanding>,
+    connections: Vec<Connection>,
     /// Bytes for the socket.
     transmit: Vec<u8>,
     next_context: u64,
@@ -74,7 +76,28 @@ pub(super) struct Client {
     last_used: Instant,
     /// Whether the controller's limits count this session.
     pub(super) controller: bool,
+    /// The session is closed as soon as nothing is left to do.
+    ending: bool,
+    keep_alive: Option<Millis>,
+    known: Known,
+    /// The last time that it did not answer, until it does.
+    error: Option<Cause>,
     dropped: u64,
+    /// Something that [`Self::view`] shows has changed.
+    changed: bool,
+    /// When the engine will call [`Self::handle_timeout`].
+    pub(super) armed: Option<Instant>,
+}
+
+/// What is known of the device.
+#[derive(Debug, Default)]
+struct Known {
+    /// What it has said that it is, on this TCP connection.
+    identity: Option<Profile>,
+    /// It has been asked once without success: not again.
+    anonymous: bool,
+    /// The connection id in its replies is that of the requests.
+    own_connection_id: bool,
 }
 
 #[derive(Debug, Default)]
@@ -84,20 +107,51 @@ enum Link {
     Connecting(LinkId),
     Registering(LinkId, Session),
     Ready(LinkId, Session),
-    Closing(LinkId),
+    /// The target has until then to close the connection.
+    Closing(LinkId, Instant),
+}
+
+/// The one request that is under way.
+#[derive(Debug)]
+struct Outstanding {
+    what: What,
+    /// What its reply will carry.
+    expected: Expected,
+    /// Its bytes have been handed out: never again.
+    written: bool,
+    /// When it is given up; a message and a Forward_Open end with their block.
+    deadline: Option<Instant>,
 }
 
 #[derive(Debug)]
-struct Outstanding {
-    job: Job,
-    context: SenderContext,
-    /// The request's bytes have been handed out: never again for this job.
-    written: bool,
+enum What {
+    /// The serial number of its connection, if it is connected.
+    Message(Job, Option<u16>),
+    /// Forward_Open for the message of this block, which is still first in the queue.
+    Open(BlockId, Opening),
+    /// Forward_Close.
+    Close,
+    /// ListIdentity.
+    Identify,
+    /// A read that keeps session and connection alive.
+    KeepAlive(Option<u16>),
+}
+
+impl What {
+    const fn block(&self) -> Option<BlockId> {
+        match self {
+            Self::Message(job, _) => Some(job.block),
+            Self::Open(block, _) => Some(*block),
+            Self::Close | Self::Identify | Self::KeepAlive(_) => None,
+        }
+    }
 }
 
 impl Client {
     pub(super) fn submit(&mut self, job: Job, cx: &mut Context<'_>) {
         self.last_used = cx.now;
+        self.ending = false;
+        self.keep_alive = Some(Millis::from(job.plan.keep_alive_ms())).filter(|span| span.0 != 0);
         cx.out.push_back(Output::Block(job.block, Input::BufferGranted));
         if matches!(self.link, Link::Connecting(_) | Link::Registering(..)) {
             cx.out.push_back(Output::Block(job.block, Input::ConnectStarted));
@@ -106,9 +160,14 @@ impl Client {
         self.advance(cx);
     }
 
-    /// The block's message has ended, here or elsewhere: forget it.
-    pub(super) fn withdraw(&mut self, block: BlockId, cx: &mut Context<'_>) {
-        if let Some(outstanding) = self.outstanding.take_if(|outstanding| outstanding.job.block == block) {
+    /// The block's message has ended, here or elsewhere: forget it. `silence` says that the target has not answered.
+    pub(super) fn withdraw(&mut self, block: BlockId, silence: Option<&Cause>, cx: &mut Context<'_>) {
+        let connecting = matches!(self.link, Link::Connecting(_) | Link::Registering(..));
+        let own = self.outstanding.take_if(|outstanding| outstanding.what.block() == Some(block));
+        if own.is_some() || connecting && self.queue.iter().any(|job| job.block == block) {
+            self.note_silence(silence, connecting, cx);
+        }
+        if let Some(outstanding) = own {
             if outstanding.written {
                 // Its answer may still come: it must never meet another request.
                 self.disconnect(cx);
@@ -124,11 +183,22 @@ impl Client {
         self.advance(cx);
     }
 
+    fn note_silence(&mut self, silence: Option<&Cause>, connecting: bool, cx: &mut Context<'_>) {
+        if let Some(cause) = silence {
+            self.error = Some(cause.clone());
+            self.changed = true;
+            if connecting {
+                self.back_off(cx.now);
+            }
+        }
+    }
+
     pub(super) fn connected(&mut self, cx: &mut Context<'_>) {
         if let Link::Connecting(id) = self.link {
             self.transmit.clear();
             let context = self.fresh_context();
             self.link = Link::Registering(id, Session::register(context, &mut self.transmit));
+            self.changed = true;
             cx.out.push_back(Output::Transmit(id));
         }
     }
@@ -142,15 +212,20 @@ impl Client {
 
     pub(super) fn closed(&mut self, cx: &mut Context<'_>) {
         let was_registering = matches!(self.link, Link::Registering(..));
-        self.link = Link::None;
-        self.transmit.clear();
-        self.asking = None;
+        self.forget_link();
         match self.outstanding.take() {
-            Some(Outstanding { job, written: true, .. }) => {
+            Some(Outstanding { what: What::Message(job, _), written: true, .. }) => {
                 cx.out.push_back(Output::Block(job.block, Input::Failed(Failure::Closed)));
             }
-            Some(Outstanding { job, written: false, .. }) => self.queue.push_front(job),
-            None => {}
+            Some(Outstanding { what: What::Message(job, _), written: false, .. }) => {
+                self.queue.push_front(job);
+            }
+            // A target that hangs up on Forward_Open does it again.
+            Some(Outstanding { what: What::Open(block, _), written: true, .. }) => {
+                self.fail_first(block, Failure::Closed, cx);
+            }
+            Some(Outstanding { what: What::Identify, .. }) => self.known.anonymous = true,
+            _ => {}
         }
         if was_registering {
             self.fail_all(&Failure::Closed, cx);
@@ -159,25 +234,45 @@ impl Client {
     }
 
     pub(super) fn permit(&mut self, wants: &Wants, allowed: bool, cx: &mut Context<'_>) {
-        let Link::Ready(id, session) = &self.link else { return };
+        let Link::Ready(id, _) = &self.link else { return };
         if *id != wants.link || self.asking != Some((wants.block, wants.shot)) {
             return;
         }
         self.asking = None;
         let Some(job) = self.queue.pop_front() else { return };
-        if !allowed {
-            cx.out.push_back(Output::Block(job.block, Input::Failed(Failure::NotPermitted)));
-            return self.advance(cx);
+        if allowed {
+            return self.send(job, cx);
         }
-        let request = job.plan.request().bytes();
-        // A plan's request fits into a message: `MessageRouterRequest::new` has checked it.
-        if let Ok(message) = UnconnectedMessage::new(&request) {
-            self.next_context += 1;
-            let context = SenderContext::from(self.next_context);
-            session.send(message, context, timeout_s(&job.plan), &mut self.transmit);
-            self.outstanding = Some(Outstanding { job, context, written: false });
-            cx.out.push_back(Output::Transmit(*id));
-        }
+        cx.out.push_back(Output::Block(job.block, Input::Failed(Failure::NotPermitted)));
+        self.advance(cx);
+    }
+
+    /// A plan's request fits into a frame: its parts have checked it when they were made.
+    fn send(&mut self, job: Job, cx: &mut Context<'_>) {
+        let context = self.fresh_context();
+        let profile = self.profile_for(&job.plan);
+        let routed = job.plan.routed(profile);
+        let Link::Ready(id, session) = &self.link else { return };
+        let connection = job
+            .plan
+            .connection()
+            .and_then(|_| self.connections.iter_mut().find(|connection| connection.route == *routed.route()));
+        let (expected, serial) = if let Some(connection) = connection {
+            let sequence = connection.next_sequence();
+            if let Ok(message) = ConnectedMessage::new(job.plan.bytes()) {
+                let address = (connection.ids.o_t, sequence);
+                session.send_connected(message, context, address, &mut self.transmit);
+            }
+            (Expected::Connected(context, connection.ids, sequence), Some(connection.triad.serial))
+        } else {
+            if let Ok(message) = UnconnectedMessage::new(routed.message()) {
+                session.send_unconnected(message, context, timeout_s(&job.plan), &mut self.transmit);
+            }
+            (Expected::Unconnected(context), None)
+        };
+        cx.out.push_back(Output::Transmit(*id));
+        let what = What::Message(job, serial);
+        self.outstanding = Some(Outstanding { what, expected, written: false, deadline: None });
     }
 
     /// Appends what is to be written. From here on the request counts as sent.
@@ -188,11 +283,14 @@ impl Client {
         if let Some(outstanding) = self.outstanding.as_mut().filter(|outstanding| !outstanding.written) {
             outstanding.written = true;
             if let Link::Ready(_, session) = &mut self.link {
-                session.expect(outstanding.context);
+                session.expect(outstanding.expected);
             }
-            let block = outstanding.job.block;
-            cx.out.push_back(Output::Wrote(block, self.transmit.clone()));
-            cx.out.push_back(Output::Block(block, Input::Written));
+            if let What::Message(job, _) = &outstanding.what {
+                let timeout = job.plan.connection().map(|connection| Millis::from(connection.timeout_ms));
+                let deadline = timeout.map(|timeout| cx.now + timeout);
+                cx.out.push_back(Output::Wrote(job.block, self.transmit.clone()));
+                cx.out.push_back(Output::Block(job.block, Input::Written { deadline }));
+            }
         }
         out.append(&mut self.transmit);
         true
@@ -202,38 +300,12 @@ impl Client {
         self.last_used = cx.now;
         if let Link::Registering(_, session) | Link::Ready(_, session) = &mut self.link {
             session.receive(bytes);
-            self.dropped += session.take_dropped();
         }
         while let Link::Registering(_, session) | Link::Ready(_, session) = &mut self.link {
             let Some(received) = session.poll() else { break };
             self.received(received, cx);
         }
         self.advance(cx);
-    }
-
-    /// Ends an idle session; the target closes the connection.
-    pub(super) fn close(&mut self, cx: &mut Context<'_>) {
-        if !self.is_idle() {
-            return;
-        }
-        let context = self.fresh_context();
-        match core::mem::take(&mut self.link) {
-            Link::Ready(id, session) => {
-                session.unregister(context, &mut self.transmit);
-                self.link = Link::Closing(id);
-                cx.out.push_back(Output::Transmit(id));
-                cx.out.push_back(Output::Closing(id, cx.now + CLOSING_TIME));
-            }
-            Link::Connecting(id) | Link::Registering(id, _) => cx.out.push_back(Output::Disconnect(id)),
-            link => self.link = link,
-        }
-    }
-
-    /// The target has not closed the connection in its time.
-    pub(super) fn drop_closing(&mut self, cx: &mut Context<'_>) {
-        if let Link::Closing(_) = self.link {
-            self.disconnect(cx);
-        }
     }
 
     /// Cyclic messages wait until then.
@@ -244,7 +316,7 @@ impl Client {
     pub(super) const fn link_id(&self) -> Option<LinkId> {
         match &self.link {
             Link::None => None,
-            Link::Connecting(id) | Link::Registering(id, _) | Link::Ready(id, _) | Link::Closing(id) => {
+            Link::Connecting(id) | Link::Registering(id, _) | Link::Ready(id, _) | Link::Closing(id, _) => {
                 Some(*id)
             }
         }
@@ -255,8 +327,10 @@ impl Client {
         matches!(self.link, Link::Connecting(_) | Link::Registering(..) | Link::Ready(..))
     }
 
+    /// Whether no message is on its way.
     pub(super) fn is_idle(&self) -> bool {
-        self.queue.is_empty() && self.outstanding.is_none()
+        let message = self.outstanding.as_ref().and_then(|outstanding| outstanding.what.block());
+        self.queue.is_empty() && message.is_none()
     }
 
     pub(super) const fn last_used(&self) -> Instant {
@@ -273,50 +347,49 @@ impl Client {
         self.dropped
     }
 
-    fn advance(&mut self, cx: &mut Context<'_>) {
-        let Some(job) = self.queue.front() else { return };
-        match &self.link {
-            Link::None | Link::Closing(_) => {
-                self.disconnect(cx);
-                *cx.next_link += 1;
-                let id = LinkId(*cx.next_link);
-                self.link = Link::Connecting(id);
-                for job in &self.queue {
-                    cx.out.push_back(Output::Block(job.block, Input::ConnectStarted));
-                }
-                cx.out.push_back(Output::Connect(id));
-            }
-            Link::Ready(link, _) if self.outstanding.is_none() && self.asking.is_none() => {
-                let wants = Wants { block: job.block, shot: job.shot, revision: job.revision, link: *link };
-                self.asking = Some((job.block, job.shot));
-                cx.out.push_back(Output::Wants(wants));
-            }
-            _ => {}
-        }
-    }
-
     fn disconnect(&mut self, cx: &mut Context<'_>) {
         if let Some(id) = self.link_id() {
             cx.out.push_back(Output::Disconnect(id));
         }
+        self.forget_link();
+    }
+
+    /// The socket is gone, and everything that lived on it.
+    fn forget_link(&mut self) {
+        self.changed |= self.link_id().is_some();
         self.link = Link::None;
+        self.connections.clear();
+        self.known.identity = None;
         self.transmit.clear();
         self.asking = None;
     }
 
     /// Nothing can be sent: everybody who waits for this endpoint hears why.
     fn fail_all(&mut self, failure: &Failure, cx: &mut Context<'_>) {
-        let delay = MIN_BACK_OFF.0 << self.failures.min(5);
-        self.failures = self.failures.saturating_add(1);
-        self.retry_at = Some(cx.now + Millis(delay.min(MAX_BACK_OFF.0)));
+        self.back_off(cx.now);
+        self.error = Some(failure.cause(Phase::Connecting));
+        self.changed = true;
         for job in self.queue.drain(..) {
             cx.out.push_back(Output::Block(job.block, Input::Failed(failure.clone())));
         }
     }
 
-    fn fresh_context(&mut self) -> SenderContext {
+    /// The message that is first in the queue cannot be sent.
+    fn fail_first(&mut self, block: BlockId, failure: Failure, cx: &mut Context<'_>) {
+        if self.queue.pop_front_if(|job| job.block == block).is_some() {
+            cx.out.push_back(Output::Block(block, Input::Failed(failure)));
+        }
+    }
+
+    fn back_off(&mut self, now: Instant) {
+        let delay = MIN_BACK_OFF.0 << self.failures.min(5);
+        self.failures = self.failures.saturating_add(1);
+        self.retry_at = Some(now + Millis(delay.min(MAX_BACK_OFF.0)));
+    }
+
+    const fn fresh_context(&mut self) -> SenderContext {
         self.next_context += 1;
-        SenderContext::from(self.next_context)
+        SenderContext(self.next_context.to_le_bytes())
     }
 }
 

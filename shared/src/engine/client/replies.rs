@@ -2,12 +2,28 @@
 
 use alloc::vec::Vec;
 
+use crate::config::Profile;
 use crate::engine::block::Input;
+use crate::engine::connection::{Opened, Opening};
 use crate::engine::failure::Failure;
 use crate::engine::session::Received;
-use crate::wire::{DecodeError, DecodeErrorKind, EncapsulationStatus, GeneralStatus, MessageRouterReply};
+use crate::engine::status::{Phase, RefusedBy};
+use crate::wire::{
+    ConnectionId, DecodeError, DecodeErrorKind, EncapsulationStatus, GeneralStatus, MessageRouterReply,
+    RouterRefusal, ServiceCode,
+};
 
-use super::{Client, Context, Job, Link, Output, Outstanding};
+use crate::config::BlockId;
+
+use super::{Client, Context, Job, Link, Output, Outstanding, What};
+
+/// The bytes of a reply.
+struct Reply {
+    message: Vec<u8>,
+    /// Where they are in the frame.
+    at: usize,
+    frame: Vec<u8>,
+}
 
 impl Client {
     pub(super) fn received(&mut self, received: Received, cx: &mut Context<'_>) {
@@ -18,6 +34,7 @@ impl Client {
                 }
                 self.failures = 0;
                 self.retry_at = None;
+                self.changed = true;
                 for job in &self.queue {
                     cx.out.push_back(Output::Block(job.block, Input::ConnectEnded));
                 }
@@ -26,62 +43,211 @@ impl Client {
                 self.disconnect(cx);
                 self.fail_all(&Failure::SessionRefused(status), cx);
             }
-            Received::Reply { message, at, frame } => self.replied(message, at, frame, cx),
-            Received::Status { status, frame } => self.status(status, frame, cx),
-            Received::Malformed { error, frame } => {
-                self.disconnect(cx);
-                match self.outstanding.take() {
-                    Some(outstanding) => fail(&outstanding.job, Failure::Malformed(error), frame, None, cx),
-                    None => self.fail_all(&Failure::Malformed(error), cx),
-                }
+            Received::Identity(item) => {
+                self.outstanding.take_if(|outstanding| matches!(outstanding.what, What::Identify));
+                let profile =
+                    item.map(|item| Profile::of_identity(item.vendor, item.device_type, item.name.bytes()));
+                self.identified(profile);
             }
+            Received::Reply { message, at, frame, id } => {
+                self.answers();
+                self.replied(Reply { message, at, frame }, id, cx);
+            }
+            Received::Status { status, frame } => {
+                self.answers();
+                self.status(status, frame, cx);
+            }
+            Received::Dropped => self.drop_frame(cx),
+            Received::Malformed { error, frame } => self.malformed(error, frame, cx),
         }
     }
 
-    fn replied(&mut self, message: Vec<u8>, at: usize, frame: Vec<u8>, cx: &mut Context<'_>) {
-        let Some(Outstanding { job, .. }) = self.outstanding.take() else { return };
+    /// The target answers: whatever was wrong with it is over.
+    fn answers(&mut self) {
+        self.changed |= self.error.take().is_some();
+    }
+
+    fn drop_frame(&mut self, cx: &mut Context<'_>) {
+        self.dropped += 1;
+        match self.outstanding.as_ref().and_then(|outstanding| outstanding.what.block()) {
+            Some(block) => cx.out.push_back(Output::Block(block, Input::ReplyDropped)),
+            // Without contexts the next reply could not be told from another one like this.
+            None if self.session().is_some_and(crate::engine::session::Session::has_no_context) => {
+                self.outstanding = None;
+                self.disconnect(cx);
+            }
+            None => {}
+        }
+    }
+
+    fn malformed(&mut self, error: DecodeError, frame: Vec<u8>, cx: &mut Context<'_>) {
+        self.disconnect(cx);
+        match self.outstanding.take().map(|outstanding| outstanding.what) {
+            Some(What::Message(job, _)) => fail(job.block, Failure::Malformed(error), frame, None, cx),
+            Some(What::Open(block, _)) => {
+                cx.out.push_back(Output::Read(block, frame, None));
+                self.fail_first(block, Failure::Malformed(error), cx);
+            }
+            Some(What::Close | What::Identify | What::KeepAlive(_)) => {}
+            None => self.fail_all(&Failure::Malformed(error), cx),
+        }
+        self.error = Some(Failure::Malformed(error).cause(Phase::Connecting));
+    }
+
+    fn replied(&mut self, reply: Reply, id: Option<ConnectionId>, cx: &mut Context<'_>) {
+        let Some(Outstanding { what, .. }) = self.outstanding.take() else { return };
+        match what {
+            What::Message(job, connection) => {
+                self.learn(connection, id, cx);
+                self.message_replied(&job, connection, reply, cx);
+            }
+            What::Open(block, opening) => self.open_replied(block, opening, reply, cx),
+            What::KeepAlive(connection) => self.learn(connection, id, cx),
+            What::Close | What::Identify => {}
+        }
+    }
+
+    /// What the connection's replies carry is known from the first one on.
+    fn learn(&mut self, serial: Option<u16>, id: Option<ConnectionId>, cx: &Context<'_>) {
+        let connection =
+            self.connections.iter_mut().find(|connection| Some(connection.triad.serial) == serial);
+        if let (Some(connection), Some(id)) = (connection, id) {
+            connection.ids.echoed = Some(id);
+            connection.last_used = cx.now;
+            connection.requests += 1;
+            let own = id == connection.ids.o_t && id != connection.ids.t_o;
+            self.changed |= own != self.known.own_connection_id;
+            self.known.own_connection_id = own;
+        }
+    }
+
+    fn message_replied(&mut self, job: &Job, connection: Option<u16>, reply: Reply, cx: &mut Context<'_>) {
         let asked = job.plan.request().service();
-        let input = match MessageRouterReply::decode(&message) {
-            Ok(reply) if reply.service != asked => {
-                let kind = DecodeErrorKind::Unexpected {
-                    field: "service of the reply",
-                    found: reply.service.0.into(),
-                };
-                Err(DecodeError { at, kind })
+        let routed = connection.is_none() && !job.plan.routed(self.profile_for(&job.plan)).route().is_empty();
+        let input = match MessageRouterReply::decode(&reply.message) {
+            Ok(answer) if answer.service == asked && answer.status == GeneralStatus::Success => {
+                Ok(Input::Succeeded { data: answer.data.to_vec(), size: job.plan.res_data_size() })
             }
-            Ok(reply) if reply.status == GeneralStatus::Success => {
-                Ok(Input::Succeeded { data: reply.data.to_vec(), size: job.plan.res_data_size() })
+            Ok(answer) if answer.service == asked => {
+                let words = answer.additional.words().collect();
+                Ok(Input::Failed(Failure::RefusedByDevice(answer.status, words)))
             }
-            Ok(reply) => {
-                let words = reply.additional.words().collect();
-                Ok(Input::Failed(Failure::RefusedByDevice(reply.status, words)))
+            Ok(answer) if routed && is_of_the_router(&answer) => {
+                Ok(Input::Failed(refused_on_the_way(RefusedBy::Router, &answer)))
             }
-            Err(error) => Err(error.shifted(at)),
+            Ok(answer) => Err(wrong_service(&answer, reply.at)),
+            Err(error) => Err(error.shifted(reply.at)),
         };
         match input {
             Ok(input) => {
-                cx.out.push_back(Output::Read(job.block, frame, Some(message)));
+                self.complete(job, connection, cx);
+                cx.out.push_back(Output::Read(job.block, reply.frame, Some(reply.message)));
                 cx.out.push_back(Output::Block(job.block, input));
             }
             Err(error) => {
                 self.disconnect(cx);
-                fail(&job, Failure::Malformed(error), frame, Some(message), cx);
+                self.error = Some(Failure::Malformed(error).cause(Phase::Connecting));
+                fail(job.block, Failure::Malformed(error), reply.frame, Some(reply.message), cx);
             }
         }
     }
 
-    fn status(&mut self, status: EncapsulationStatus, frame: Vec<u8>, cx: &mut Context<'_>) {
-        let Some(Outstanding { mut job, .. }) = self.outstanding.take() else { return };
-        if status == EncapsulationStatus::InvalidSessionHandle && !job.resent {
-            job.resent = true;
-            self.queue.push_front(job);
-            return self.disconnect(cx);
+    /// The message has been answered: its connection stays for its time, or is closed after the last one of its users.
+    fn complete(&mut self, job: &Job, serial: Option<u16>, cx: &mut Context<'_>) {
+        let Some(plan) = job.plan.connection() else { return };
+        let others = self.connections.len() > 1 || !self.queue.is_empty();
+        let connection =
+            self.connections.iter_mut().find(|connection| Some(connection.triad.serial) == serial);
+        let Some(connection) = connection else { return };
+        connection.idle = plan.timeout_ms.into();
+        connection.close_wanted |= plan.close;
+        if !connection.close_wanted {
+            return;
         }
-        fail(&job, Failure::EncapsulationStatus(status), frame, None, cx);
+        let route = connection.route.clone();
+        if !self.is_wanted(&route) {
+            self.ending |= !others;
+            cx.out.push_back(Output::Block(job.block, Input::Closing { session: !others }));
+        }
+    }
+
+    fn open_replied(&mut self, block: BlockId, opening: Opening, reply: Reply, cx: &mut Context<'_>) {
+        let answer = match MessageRouterReply::decode(&reply.message) {
+            Ok(answer) if answer.service == opening.service() => answer,
+            Ok(answer) => return self.malformed_open(block, wrong_service(&answer, reply.at), &reply, cx),
+            Err(error) => return self.malformed_open(block, error.shifted(reply.at), &reply, cx),
+        };
+        match opening.answered(&answer, cx.originator, cx.now) {
+            Opened::Yes(connection) => {
+                self.connections.push(connection);
+                self.changed = true;
+                cx.out.push_back(Output::Block(block, Input::ConnectEnded));
+            }
+            Opened::Again(opening) => self.open(opening, cx),
+            Opened::No if answer.status == GeneralStatus::Success => {
+                let kind = DecodeErrorKind::Unexpected { field: "connection in the reply", found: 0 };
+                self.malformed_open(block, DecodeError { at: reply.at, kind }, &reply, cx);
+            }
+            Opened::No => {
+                let failure = refused_on_the_way(RefusedBy::ForwardOpen, &answer);
+                let message = reply.message.clone();
+                cx.out.push_back(Output::Read(block, reply.frame, Some(message)));
+                self.fail_first(block, failure, cx);
+            }
+        }
+    }
+
+    fn malformed_open(&mut self, block: BlockId, error: DecodeError, reply: &Reply, cx: &mut Context<'_>) {
+        self.disconnect(cx);
+        self.error = Some(Failure::Malformed(error).cause(Phase::Connecting));
+        cx.out.push_back(Output::Read(block, reply.frame.clone(), Some(reply.message.clone())));
+        self.fail_first(block, Failure::Malformed(error), cx);
+    }
+
+    fn status(&mut self, status: EncapsulationStatus, frame: Vec<u8>, cx: &mut Context<'_>) {
+        let Some(Outstanding { what, .. }) = self.outstanding.take() else { return };
+        let unknown_session = status == EncapsulationStatus::InvalidSessionHandle;
+        match what {
+            What::Message(mut job, _) if unknown_session && !job.resent => {
+                job.resent = true;
+                self.queue.push_front(job);
+                self.disconnect(cx);
+            }
+            What::Message(job, _) => fail(job.block, Failure::EncapsulationStatus(status), frame, None, cx),
+            What::Open(block, _) => {
+                if let Some(job) = self.queue.front_mut().filter(|job| unknown_session && !job.resent) {
+                    job.resent = true;
+                    return self.disconnect(cx);
+                }
+                cx.out.push_back(Output::Read(block, frame, None));
+                self.fail_first(block, Failure::EncapsulationStatus(status), cx);
+            }
+            What::KeepAlive(_) if unknown_session => self.disconnect(cx),
+            What::Close | What::Identify | What::KeepAlive(_) => {}
+        }
     }
 }
 
-fn fail(job: &Job, failure: Failure, frame: Vec<u8>, message: Option<Vec<u8>>, cx: &mut Context<'_>) {
-    cx.out.push_back(Output::Read(job.block, frame, message));
-    cx.out.push_back(Output::Block(job.block, Input::Failed(failure)));
+/// An error that a router on the way gives: the target's own reply would be of the inner service.
+fn is_of_the_router(answer: &MessageRouterReply<'_>) -> bool {
+    answer.service == ServiceCode::UnconnectedSend && answer.status != GeneralStatus::Success
+}
+
+fn refused_on_the_way(by: RefusedBy, answer: &MessageRouterReply<'_>) -> Failure {
+    Failure::RefusedOnTheWay {
+        by,
+        status: answer.status,
+        words: answer.additional.words().collect(),
+        remaining_path: RouterRefusal::decode(answer.service, answer.data).remaining_path,
+    }
+}
+
+fn wrong_service(answer: &MessageRouterReply<'_>, at: usize) -> DecodeError {
+    let found = answer.service.0.into();
+    DecodeError { at, kind: DecodeErrorKind::Unexpected { field: "service of the reply", found } }
+}
+
+fn fail(block: BlockId, failure: Failure, frame: Vec<u8>, message: Option<Vec<u8>>, cx: &mut Context<'_>) {
+    cx.out.push_back(Output::Read(block, frame, message));
+    cx.out.push_back(Output::Block(block, Input::Failed(failure)));
 }

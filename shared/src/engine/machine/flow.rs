@@ -11,6 +11,7 @@ use crate::engine::client::Job;
 use crate::engine::entry::{Active, Entry};
 use crate::engine::event::{Event, Exchange};
 use crate::engine::failure::Failure;
+use crate::engine::status::CauseKind;
 use crate::engine::time::{Instant, Millis};
 
 use super::Engine;
@@ -27,7 +28,7 @@ impl Engine {
         let timeout = entry.plan.as_ref().map_or(NO_TIME, |plan| Millis::from(plan.ucmm_timeout_ms()));
         if !entry.block.phase().is_busy() {
             entry.request =
-                entry.plan.as_ref().map_or_else(|_| Arc::default(), |plan| plan.request().bytes().into());
+                entry.plan.as_ref().map_or_else(|_| Arc::default(), |plan| Arc::clone(plan.bytes()));
         }
         self.step(block, Input::Trigger { deadline: now + timeout }, now);
     }
@@ -97,6 +98,7 @@ impl Engine {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         entry.trigger.ended(now);
         let view = Box::new(entry.view());
+        let silence = view.cause.clone().filter(|cause| cause.what == CauseKind::Timeout);
         let run_once = core::mem::take(&mut entry.run_once);
         let mut active = entry.active.take();
         let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
@@ -110,7 +112,7 @@ impl Engine {
         }
         if let Some(active) = active {
             self.buffers(active.channel).release(block);
-            self.client(&active.target, now, |client, cx| client.withdraw(block, cx));
+            self.client(&active.target, now, |client, cx| client.withdraw(block, silence.as_ref(), cx));
             self.grant(active.channel, now);
             if changed_target {
                 self.retire(&active.target, now);
@@ -146,7 +148,10 @@ impl Engine {
             plan: Arc::clone(&active.plan),
             resent: false,
         };
-        if channel == Channel::Controller && !self.session_for_controller(&target, now) {
+        let plan = Arc::clone(&job.plan);
+        if channel == Channel::Controller
+            && !(self.session_for_controller(&target, now) && self.connection_for_controller(&plan, now))
+        {
             self.step(block, Input::BufferGranted, now);
             return self.step(block, Input::Failed(Failure::Limit), now);
         }

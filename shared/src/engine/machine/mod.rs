@@ -13,9 +13,11 @@ use crate::plan::{Finding, MessagePlan};
 use crate::engine::block::{BlockView, Input};
 use crate::engine::channel::Buffers;
 use crate::engine::client::Client;
+use crate::engine::connection::Originator;
 use crate::engine::entry::{Entry, Invalid};
 use crate::engine::event::{Event, LinkId, Wants};
 use crate::engine::failure::ConnectError;
+use crate::engine::target::TargetView;
 use crate::engine::time::Instant;
 
 /// Owner of everything that runs. See the module's text for the order of calls.
@@ -27,8 +29,9 @@ pub struct Engine {
     clients: BTreeMap<Target, Client>,
     links: BTreeMap<LinkId, Target>,
     timers: BTreeSet<(Instant, BlockId)>,
-    /// Until when a target may close a connection itself. The time for that is always the same: the first is next.
-    closing: VecDeque<(Instant, LinkId)>,
+    /// When clients have something to do without a block; each is here once at most, perhaps too early.
+    housekeeping: BTreeSet<(Instant, Target)>,
+    originator: Originator,
     events: VecDeque<Event>,
     next_link: u64,
     next_shot: u64,
@@ -52,8 +55,13 @@ impl Default for Engine {
 }
 
 impl Engine {
-    /// Without blocks.
+    /// Without blocks, for tests and demos: connections have the same names at every start.
     pub const fn new() -> Self {
+        Self::with_originator(Originator::new(0))
+    }
+
+    /// Without blocks.
+    pub const fn with_originator(originator: Originator) -> Self {
         Self {
             blocks: BTreeMap::new(),
             controller: Buffers::controller(),
@@ -61,7 +69,8 @@ impl Engine {
             clients: BTreeMap::new(),
             links: BTreeMap::new(),
             timers: BTreeSet::new(),
-            closing: VecDeque::new(),
+            housekeeping: BTreeSet::new(),
+            originator,
             events: VecDeque::new(),
             next_link: 0,
             next_shot: 0,
@@ -202,8 +211,8 @@ impl Engine {
     /// When to call [`Self::handle_timeout`].
     pub fn poll_timeout(&self) -> Option<Instant> {
         let block = self.timers.first().map(|(at, _)| *at);
-        let closing = self.closing.front().map(|(at, _)| *at);
-        block.into_iter().chain(closing).min()
+        let housekeeping = self.housekeeping.first().map(|(at, _)| *at);
+        block.into_iter().chain(housekeeping).min()
     }
 
     /// Time has passed. Too early is harmless.
@@ -213,12 +222,13 @@ impl Engine {
             self.cycle(block, now);
             self.rearm(block);
         }
-        while let Some((_, link)) = self.closing.pop_front_if(|(at, _)| *at <= now) {
-            let target = self.links.get(&link).cloned();
-            self.link(link, now, Client::drop_closing);
-            if let Some(target) = target {
-                self.retire(&target, now);
+        while self.housekeeping.first().is_some_and(|(at, _)| *at <= now) {
+            let Some((_, target)) = self.housekeeping.pop_first() else { break };
+            if let Some(client) = self.clients.get_mut(&target) {
+                client.armed = None;
             }
+            self.client(&target, now, Client::handle_timeout);
+            self.retire(&target, now);
         }
     }
 
@@ -241,6 +251,11 @@ impl Engine {
     /// Whether no connection is there or being made: everything has been closed.
     pub fn is_quiet(&self) -> bool {
         self.clients.values().all(|client| client.link_id().is_none())
+    }
+
+    /// All targets that blocks have been triggered for, and how they look.
+    pub fn targets(&self) -> impl Iterator<Item = (&Target, TargetView)> {
+        self.clients.iter().map(|(target, client)| (target, client.view()))
     }
 
     /// Frames from a target that answered nothing: late, or not meant for us.

@@ -1,12 +1,14 @@
 //! Calls into clients, what they want done, and who may have a session.
 
+use alloc::boxed::Box;
 use alloc::collections::VecDeque;
 
 use crate::config::{BlockId, Target};
-use crate::engine::channel::CONTROLLER_SESSIONS;
+use crate::engine::channel::{CONTROLLER_CONNECTIONS, CONTROLLER_SESSIONS};
 use crate::engine::client::{Client, Context, Output};
 use crate::engine::event::{Event, Exchange, LinkId};
 use crate::engine::time::Instant;
+use crate::plan::MessagePlan;
 
 use super::Engine;
 
@@ -28,6 +30,29 @@ impl Engine {
         })
     }
 
+    /// Whether the controller may have a class 3 connection for this message; idle ones are given up if need be.
+    pub(super) fn connection_for_controller(&mut self, plan: &MessagePlan, now: Instant) -> bool {
+        if plan.connection().is_none() {
+            return true;
+        }
+        let counts = |client: &Client| client.controller && client.holds_session();
+        if self.clients.get(plan.target()).is_some_and(|client| client.has_connection_for(plan)) {
+            return true;
+        }
+        let in_use = self.clients.values().filter(|client| counts(client)).map(Client::connections_in_use);
+        if in_use.sum::<usize>() < CONTROLLER_CONNECTIONS {
+            return true;
+        }
+        let idle = self.clients.iter().filter(|(target, client)| {
+            counts(client) && client.is_idle() && client.connections_in_use() > 0 && *target != plan.target()
+        });
+        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
+        oldest.is_some_and(|target| {
+            self.client(&target, now, Client::close);
+            true
+        })
+    }
+
     /// Closes the session with a target that no block needs any more, and forgets it once it is closed.
     pub(super) fn retire(&mut self, target: &Target, now: Instant) {
         let needed = self.blocks.values().any(|entry| {
@@ -38,6 +63,7 @@ impl Engine {
             self.client(target, now, Client::close);
             if self.clients.get(target).is_some_and(|client| client.link_id().is_none()) {
                 self.clients.remove(target);
+                self.events.push_back(Event::Target { target: target.clone(), view: None });
             }
         }
     }
@@ -64,7 +90,18 @@ impl Engine {
     ) -> Option<T> {
         let mut out = VecDeque::new();
         let client = self.clients.get_mut(target)?;
-        let result = call(client, &mut Context { now, next_link: &mut self.next_link, out: &mut out });
+        let (next_link, originator) = (&mut self.next_link, &mut self.originator);
+        let result = call(client, &mut Context { now, next_link, originator, out: &mut out });
+        let due = client.poll_timeout().filter(|at| client.armed.is_none_or(|armed| *at < armed));
+        if let Some(due) = due {
+            // One that is too early does no harm: most clients are used again before their time.
+            client.armed.replace(due).map(|armed| self.housekeeping.remove(&(armed, target.clone())));
+            self.housekeeping.insert((due, target.clone()));
+        }
+        if client.take_changed() {
+            let view = Some(Box::new(client.view()));
+            self.events.push_back(Event::Target { target: target.clone(), view });
+        }
         for output in out {
             self.output(target, output, now);
         }
@@ -81,7 +118,6 @@ impl Engine {
                 self.links.remove(&link);
                 self.events.push_back(Event::Disconnect { link });
             }
-            Output::Closing(link, until) => self.closing.push_back((until, link)),
             Output::Transmit(link) => self.events.push_back(Event::Transmit { link }),
             Output::Wants(wants) => self.events.push_back(Event::Wants(wants)),
             Output::Block(block, input) => self.step(block, input, now),

@@ -1,0 +1,176 @@
+//! What a client does without a block: closing what is not used, keeping alive, asking who it is.
+
+use crate::config::Profile;
+use crate::wire::{
+    ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouterRequest, RequestTimeout, ServiceCode,
+};
+
+use crate::engine::session::Expected;
+use crate::engine::status::{Cause, CauseKind};
+use crate::engine::time::{Instant, Millis};
+
+use super::{Client, Context, Link, Output, Outstanding, What};
+
+/// How long the target has for closing the TCP connection after UnRegisterSession.
+const CLOSING_TIME: Millis = Millis(500);
+
+/// How long the target has for its answer to Forward_Close.
+const CLOSE_TIME: Millis = Millis(500);
+
+/// How long the target has for saying who it is; afterwards it is nothing special.
+const IDENTIFY_TIME: Millis = Millis(500);
+
+/// How long the target has for the answer to a read that keeps it alive.
+const KEEP_ALIVE_TIME: Millis = Millis(3_000);
+
+/// Identity, status: every device has it.
+const STATUS_ATTRIBUTE: u32 = 5;
+
+impl Client {
+    /// Ends an idle session: its connections first; the target closes the TCP connection.
+    pub(in crate::engine) fn close(&mut self, cx: &mut Context<'_>) {
+        if !self.is_idle() {
+            return;
+        }
+        match &self.link {
+            Link::Ready(..) => {
+                self.ending = true;
+                self.connections.iter_mut().for_each(|connection| connection.close_wanted = true);
+                self.advance(cx);
+            }
+            Link::Connecting(_) | Link::Registering(..) => self.disconnect(cx),
+            Link::None | Link::Closing(..) => {}
+        }
+    }
+
+    /// When [`Self::handle_timeout`] has something to do.
+    pub(in crate::engine) fn poll_timeout(&self) -> Option<Instant> {
+        match &self.link {
+            Link::Closing(_, until) => Some(*until),
+            Link::Ready(..) => match &self.outstanding {
+                Some(outstanding) => outstanding.deadline,
+                None if self.is_idle() => self.next_idle(),
+                None => None,
+            },
+            Link::None | Link::Connecting(_) | Link::Registering(..) => None,
+        }
+    }
+
+    /// Time has passed. Too early is harmless.
+    pub(in crate::engine) fn handle_timeout(&mut self, cx: &mut Context<'_>) {
+        if self.poll_timeout().is_none_or(|at| at > cx.now) {
+            return;
+        }
+        if let Link::Closing(..) = self.link {
+            return self.disconnect(cx);
+        }
+        if let Some(outstanding) = self.outstanding.take() {
+            return self.give_up(&outstanding.what, cx);
+        }
+        if self.keep_alive.is_some() {
+            return self.keep_alive(cx);
+        }
+        for connection in &mut self.connections {
+            connection.close_wanted |= connection.last_used + connection.idle <= cx.now;
+        }
+        let longest = self.connections.iter().map(|connection| connection.idle).max().unwrap_or_default();
+        // 2080-RM001D p. 182: with its last connection the session is closed.
+        self.ending |= self.last_used + longest <= cx.now;
+        self.advance(cx);
+    }
+
+    /// An idle connection is closed after its time; with a keep-alive nothing is closed.
+    fn next_idle(&self) -> Option<Instant> {
+        match self.keep_alive {
+            Some(period) => Some(self.last_used + period),
+            None => self.connections.iter().map(|connection| connection.last_used + connection.idle).min(),
+        }
+    }
+
+    fn give_up(&mut self, what: &What, cx: &mut Context<'_>) {
+        match what {
+            // A late ListIdentity reply answers nothing: no other command has that reply.
+            What::Identify => self.identified(None),
+            What::KeepAlive(_) => {
+                self.error = Some(Cause::new(CauseKind::Timeout));
+                self.disconnect(cx);
+            }
+            _ => self.disconnect(cx),
+        }
+        self.advance(cx);
+    }
+
+    /// A connection that is to be closed and that no message waits for.
+    pub(super) fn unwanted_connection(&self) -> Option<usize> {
+        self.connections
+            .iter()
+            .position(|connection| connection.close_wanted && !self.is_wanted(&connection.route))
+    }
+
+    /// Whether a message in the queue is for this route's connection.
+    pub(super) fn is_wanted(&self, route: &Epath) -> bool {
+        self.queue.iter().any(|job| {
+            job.plan.connection().is_some() && job.plan.routed(self.profile_for(&job.plan)).route() == route
+        })
+    }
+
+    /// Sends Forward_Close. The connection counts as closed from here on.
+    pub(super) fn close_connection(&mut self, index: usize, cx: &mut Context<'_>) {
+        let connection = self.connections.swap_remove(index);
+        self.changed = true;
+        if let Ok(request) = connection.close_request(RequestTimeout::at_least(1_000)) {
+            self.send_own(What::Close, &request, 1, Some(cx.now + CLOSE_TIME), cx);
+        }
+    }
+
+    pub(super) fn unregister(&mut self, cx: &mut Context<'_>) {
+        let context = self.fresh_context();
+        if let Link::Ready(id, session) = &self.link {
+            let id = *id;
+            session.unregister(context, &mut self.transmit);
+            self.link = Link::Closing(id, cx.now + CLOSING_TIME);
+            self.connections.clear();
+            self.changed = true;
+            cx.out.push_back(Output::Transmit(id));
+        }
+    }
+
+    pub(super) fn identify(&mut self, cx: &mut Context<'_>) {
+        let context = self.fresh_context();
+        if let Link::Ready(id, session) = &self.link {
+            session.ask_identity(context, &mut self.transmit);
+            let (expected, deadline) = (Expected::Identity(context), Some(cx.now + IDENTIFY_TIME));
+            self.outstanding = Some(Outstanding { what: What::Identify, expected, written: false, deadline });
+            cx.out.push_back(Output::Transmit(*id));
+        }
+    }
+
+    pub(super) fn identified(&mut self, profile: Option<Profile>) {
+        self.known.anonymous |= profile.is_none();
+        self.known.identity = profile;
+        self.changed = true;
+    }
+
+    /// Reads the device's status over the connection that was used least recently, or without one.
+    fn keep_alive(&mut self, cx: &mut Context<'_>) {
+        let path = Epath::object(ClassCode::Identity.0, 1).then(LogicalKind::Attribute, STATUS_ATTRIBUTE);
+        let request =
+            MessageRouterRequest::new(ServiceCode::GetAttributeSingle, path, alloc::vec::Vec::new());
+        let Ok(request) = request.map(|request| request.bytes()) else { return };
+        let deadline = Some(cx.now + KEEP_ALIVE_TIME);
+        let context = self.fresh_context();
+        let connection = self.connections.iter_mut().min_by_key(|connection| connection.last_used);
+        let (Some(connection), Link::Ready(id, session)) = (connection, &self.link) else {
+            return self.send_own(What::KeepAlive(None), &request, 1, deadline, cx);
+        };
+        if let Ok(message) = ConnectedMessage::new(&request) {
+            let sequence = connection.next_sequence();
+            let address = (connection.ids.o_t, sequence);
+            session.send_connected(message, context, address, &mut self.transmit);
+            let what = What::KeepAlive(Some(connection.triad.serial));
+            let expected = Expected::Connected(context, connection.ids, sequence);
+            self.outstanding = Some(Outstanding { what, expected, written: false, deadline });
+            cx.out.push_back(Output::Transmit(*id));
+        }
+    }
+}
