@@ -3,7 +3,7 @@
 use std::future::Future;
 use std::sync::Arc;
 
-use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, findings};
+use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, TargetStatus, findings};
 use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::BlockView;
 use cipdeck_shared::plan::{Finding, MessagePlan};
@@ -79,6 +79,15 @@ impl Blocks {
         let frames = self.0.hub.frames(id).ok_or_else(|| ApiError::no_block(id))?;
         let file = capture::of_exchanges(&frames).map_err(|error| ApiError::Internal(error.to_string()))?;
         Ok((capture::file_name(&name, id), file))
+    }
+
+    /// All targets that blocks have been triggered for.
+    pub(crate) fn targets(&self) -> Vec<TargetStatus> {
+        let all = self.0.runner.targets();
+        let status = |(target, view, idle_ms): &(_, _, _)| {
+            TargetStatus::new(target, view, self.0.hub.target_since(target), *idle_ms)
+        };
+        all.iter().map(status).collect()
     }
 
     /// Stores a new block.

@@ -20,8 +20,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, LastSuccess};
-use cipdeck_shared::config::{BlockId, MsgCipGeneric};
-use cipdeck_shared::engine::{BlockView, Exchange};
+use cipdeck_shared::config::{BlockId, MsgCipGeneric, Target};
+use cipdeck_shared::engine::{BlockView, Exchange, TargetView};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 
 use crate::runner::{Observer, Refused, Runner, Tap, Trace};
@@ -137,4 +137,6 @@ impl Observer for Nobody {
     fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
         None
     }
+
+    fn target(&self, _: &Target, _: Option<&TargetView>) {}
 }

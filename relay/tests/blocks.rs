@@ -109,7 +109,7 @@ async fn bad_input_is_a_problem_and_nothing_is_stored() {
         ("/TargetCfg/Path", json!(""), "TargetCfg.Path"),
         ("/TargetCfg/Path", json!("4,10.0.0.1,1,0,1,0"), "TargetCfg.Path"),
         ("/TargetCfg/Path", json!("2,1"), "TargetCfg.Path"),
-        ("/TargetCfg/Path", json!("4,10.0.0.1,1,0"), "TargetCfg.Path"),
+        ("/TargetCfg/Path", json!("4,10.0.0.1,1,256"), "TargetCfg.Path"),
         ("/ReqData", json!("00".repeat(491)), "ReqData"),
         ("/ReqData", json!("0a0"), "ReqData"),
     ] {

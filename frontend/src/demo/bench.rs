@@ -117,6 +117,8 @@ impl Bench {
             Event::Wants(wants) => {
                 self.engine.permit(&wants, self.permitted.get(&wants.block).is_some(), now);
             }
+            // The built-in device is always there.
+            Event::Target { .. } => {}
             Event::Changed { block, view } => return Some(News::Changed(block, view)),
             Event::Finished { block, exchange, .. } => return Some(News::Finished(block, exchange)),
         }

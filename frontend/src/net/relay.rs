@@ -223,14 +223,14 @@ impl Relay {
                 self.show(Link::Foreign { protocol });
             }
             ServerMessage::Hello { .. } => self.greeted(),
-            ServerMessage::Snapshot { seq, blocks, statuses } => {
+            ServerMessage::Snapshot { seq, blocks, statuses, .. } => {
                 self.0.sequence.borrow_mut().snapshot(seq);
                 self.0.rows.snapshot(blocks, statuses);
                 if !self.0.has_snapshot.replace(true) {
                     self.0.watchers.wake();
                 }
             }
-            ServerMessage::Changes { seq, statuses, blocks, removed } => {
+            ServerMessage::Changes { seq, statuses, blocks, removed, .. } => {
                 if self.0.sequence.borrow_mut().changes(seq) {
                     self.0.rows.changes(statuses, blocks, &removed);
                 }

@@ -7,6 +7,7 @@ mod discovery;
 mod extract;
 mod guard;
 mod health;
+mod targets;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -28,6 +29,7 @@ pub(crate) fn router(app: App) -> Router {
         .route("/ws", get(ws::upgrade))
         .route("/check", post(commands::check))
         .route("/discover", post(discovery::discover))
+        .route("/targets", get(targets::list))
         .route("/blocks", get(blocks::list).post(blocks::create))
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
         .route("/blocks/{id}/status", get(blocks::status))

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Bound;
 
-use cipdeck_shared::api::BlockStatus;
+use cipdeck_shared::api::{BlockStatus, TargetStatus};
 use cipdeck_shared::config::{Block, BlockId};
 
 use super::Latest;
@@ -18,7 +18,7 @@ pub(crate) struct Cursor {
 }
 
 /// News for one viewer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Update {
     /// Everything there is, not only what has changed.
     pub(crate) is_snapshot: bool,
@@ -28,6 +28,10 @@ pub(crate) struct Update {
     pub(crate) statuses: Vec<BlockStatus>,
     /// Blocks that are gone.
     pub(crate) removed: Vec<BlockId>,
+    /// Targets that look different.
+    pub(crate) targets: Vec<TargetStatus>,
+    /// Targets that no block needs any more.
+    pub(crate) targets_removed: Vec<String>,
 }
 
 impl Latest {
@@ -42,7 +46,7 @@ impl Latest {
 
     fn snapshot(&self, cursor: &mut Cursor) -> Update {
         cursor.edges.clear();
-        let mut update = Update { is_snapshot: true, blocks: vec![], statuses: vec![], removed: vec![] };
+        let mut update = Update { is_snapshot: true, targets: self.targets.all(), ..Update::default() };
         for (id, row) in &self.rows {
             update.blocks.push(row.block.clone());
             let (status, edges) = row.status(None);
@@ -53,7 +57,8 @@ impl Latest {
     }
 
     fn changes(&self, seen: u64, cursor: &mut Cursor) -> Update {
-        let mut update = Update { is_snapshot: false, blocks: vec![], statuses: vec![], removed: vec![] };
+        let (targets, targets_removed) = self.targets.newer(seen);
+        let mut update = Update { targets, targets_removed, ..Update::default() };
         for (_, id) in self.removed.iter().filter(|(version, _)| *version > seen) {
             cursor.edges.remove(id);
             update.removed.push(*id);

@@ -3,17 +3,19 @@
 
 mod changes;
 mod row;
+mod targets;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Mutex;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView};
-use cipdeck_shared::config::{Block, BlockId};
-use cipdeck_shared::engine::{BlockView, Exchange};
+use cipdeck_shared::config::{Block, BlockId, Target};
+use cipdeck_shared::engine::{BlockView, Exchange, TargetView};
 use tokio::sync::watch;
 
 pub(crate) use self::changes::{Cursor, Update};
 use self::row::Row;
+use self::targets::Targets;
 use crate::capture::Carried;
 use crate::runner::{Observer, Trace, lock};
 use crate::wall_clock;
@@ -32,6 +34,7 @@ struct Latest {
     rows: BTreeMap<BlockId, Row>,
     order: BTreeMap<u64, BlockId>,
     removed: VecDeque<(u64, BlockId)>,
+    targets: Targets,
     /// Viewers that have seen less than this need a snapshot: removals have been forgotten.
     forgotten: u64,
 }
@@ -101,6 +104,11 @@ impl Hub {
         lock(&self.latest).rows.get(&id).map(Row::frames)
     }
 
+    /// Since when a target is in its state.
+    pub(crate) fn target_since(&self, target: &Target) -> Option<String> {
+        lock(&self.latest).targets.since(target)
+    }
+
     /// Changes whenever something has changed.
     pub(crate) fn watch(&self) -> watch::Receiver<u64> {
         self.version.subscribe()
@@ -162,6 +170,20 @@ impl Observer for Hub {
             }
         });
         status
+    }
+
+    fn target(&self, target: &Target, view: Option<&TargetView>) {
+        self.change(|latest| {
+            latest.version += 1;
+            let forgotten = match view {
+                Some(view) => {
+                    latest.targets.put(target, view, latest.version);
+                    None
+                }
+                None => latest.targets.remove(target, latest.version),
+            };
+            latest.forgotten = latest.forgotten.max(forgotten.unwrap_or(0));
+        });
     }
 }
 

@@ -11,12 +11,15 @@ mod timer;
 mod trail;
 
 use std::collections::{BTreeMap, HashMap};
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use cipdeck_shared::api::BlockStatus;
 use cipdeck_shared::config::{BlockId, Target};
-use cipdeck_shared::engine::{BlockView, CommandError, Engine, Event, Exchange, Instant, LinkId, Wants};
+use cipdeck_shared::engine::{
+    BlockView, CommandError, Engine, Event, Exchange, Instant, LinkId, Originator, TargetView, Wants,
+};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use cipdeck_shared::sim::Device;
 use tokio::runtime::Handle;
@@ -45,6 +48,8 @@ pub(crate) trait Observer: Send + Sync + 'static {
         exchange: &Exchange,
         trace: Option<Trace>,
     ) -> Option<BlockStatus>;
+    /// A target looks different; `None` when no block needs it any more.
+    fn target(&self, target: &Target, view: Option<&TargetView>);
 }
 
 /// How a run ended: with DN or ER.
@@ -129,7 +134,7 @@ impl Runner {
 
     fn with_gate(observer: Arc<dyn Observer>, gate: Gate, tap: Option<Arc<dyn Tap>>) -> Self {
         let inner = Arc::new(Inner {
-            state: Mutex::default(),
+            state: Mutex::new(State { engine: Engine::with_originator(originator()), ..State::default() }),
             observer,
             gate,
             tap,
@@ -192,6 +197,14 @@ impl Runner {
     /// How a block looks, with all edges of its last message.
     pub(crate) fn view(&self, block: BlockId) -> Option<BlockView> {
         lock(&self.0.state).engine.view(block)
+    }
+
+    /// All targets that blocks have been triggered for, and the ms since each was used.
+    pub(crate) fn targets(&self) -> Vec<(Target, TargetView, u64)> {
+        let now = self.0.clock.now();
+        let state = lock(&self.0.state);
+        let idle = |view: &TargetView| now.micros_since(view.last_used) / 1_000;
+        state.engine.targets().map(|(target, view)| (target.clone(), view.clone(), idle(&view))).collect()
     }
 
     /// Cancels everything, says farewell on every session, and ends all tasks.
@@ -273,6 +286,7 @@ impl Inner {
             }
             Event::Wants(wants) => self.ask(&wants, state, now),
             Event::Changed { block, view } => self.observer.changed(block, &view),
+            Event::Target { target, view } => self.observer.target(&target, view.as_deref()),
             Event::Finished { block, shot, view, exchange } => {
                 let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
                 tracing::debug!(%block, shot, error_id, sub_error_id, elapsed_us = view.elapsed_us, "ended");
@@ -305,6 +319,11 @@ impl Inner {
         }
         state.engine.permit(wants, verdict.is_ok(), now);
     }
+}
+
+/// Differs from start to start: a target may still know the connections of the relay that was killed.
+fn originator() -> Originator {
+    Originator::new(RandomState::new().build_hasher().finish())
 }
 
 impl State {

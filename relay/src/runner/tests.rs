@@ -14,6 +14,8 @@ impl Observer for Nobody {
     fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
         None
     }
+
+    fn target(&self, _: &Target, _: Option<&TargetView>) {}
 }
 
 fn plan(config: &MsgCipGeneric) -> MessagePlan {

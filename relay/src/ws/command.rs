@@ -6,11 +6,11 @@ use crate::blocks::Blocks;
 use crate::error::ApiError;
 
 /// Reads a message. What cannot be read is answered under its id, if it has one.
-pub(super) fn read(text: &str) -> Result<ClientMessage, ServerMessage> {
+pub(super) fn read(text: &str) -> Result<ClientMessage, Box<ServerMessage>> {
     serde_json::from_str(text).map_err(|error| {
         let id = serde_json::from_str::<serde_json::Value>(text).ok();
         let id = id.as_ref().and_then(|value| value.get("id")?.as_str()).unwrap_or_default();
-        unreadable(id, &format!("the message cannot be read: {error}"))
+        Box::new(unreadable(id, &format!("the message cannot be read: {error}")))
     })
 }
 

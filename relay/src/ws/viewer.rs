@@ -91,7 +91,7 @@ enum End {
 const TOO_LONG: End = End::Close(close_code::SIZE, "a message has at most 64 KiB");
 
 enum Wrong {
-    Answer(ServerMessage),
+    Answer(Box<ServerMessage>),
     End(End),
 }
 
@@ -100,7 +100,7 @@ fn read(frame: Message) -> Result<Option<cipdeck_shared::api::ClientMessage>, Wr
         Message::Text(text) if text.len() > MAX_MESSAGE => Err(Wrong::End(TOO_LONG)),
         Message::Binary(bytes) if bytes.len() > MAX_MESSAGE => Err(Wrong::End(TOO_LONG)),
         Message::Text(text) => command::read(&text).map(Some).map_err(Wrong::Answer),
-        Message::Binary(_) => Err(Wrong::Answer(command::unreadable("", "messages are text"))),
+        Message::Binary(_) => Err(Wrong::Answer(Box::new(command::unreadable("", "messages are text")))),
         Message::Close(_) => Err(Wrong::End(End::Gone)),
         // Answered by the socket itself.
         Message::Ping(_) | Message::Pong(_) => Ok(None),
@@ -127,11 +127,12 @@ impl<S: Sink<Message> + Unpin> Viewer<S> {
     async fn update(&mut self, blocks: &Blocks) -> Result<(), End> {
         let Some(update) = blocks.hub().update(&mut self.cursor) else { return Ok(()) };
         self.seq += 1;
-        let (seq, Update { is_snapshot, blocks, statuses, removed }) = (self.seq, update);
+        let seq = self.seq;
+        let Update { is_snapshot, blocks, statuses, removed, targets, targets_removed } = update;
         let message = if is_snapshot {
-            ServerMessage::Snapshot { seq, blocks, statuses }
+            ServerMessage::Snapshot { seq, blocks, statuses, targets }
         } else {
-            ServerMessage::Changes { seq, statuses, blocks, removed }
+            ServerMessage::Changes { seq, statuses, blocks, removed, targets, targets_removed }
         };
         self.say(&message).await
     }

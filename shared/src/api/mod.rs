@@ -3,6 +3,7 @@
 mod discovery;
 mod rest;
 mod status;
+mod target;
 mod ws;
 
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
@@ -10,4 +11,5 @@ pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
 };
 pub use self::status::{BlockStatus, LastSuccess, MAX_EDGES};
+pub use self::target::{ConnectionStatus, TargetStatus};
 pub use self::ws::{ClientMessage, PROTOCOL_VERSION, ServerMessage};

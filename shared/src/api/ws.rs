@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rest::Answer;
 use super::status::BlockStatus;
+use super::target::TargetStatus;
 use crate::config::{Block, BlockId};
 
 /// The `protocol` in `hello`.
@@ -32,6 +33,9 @@ pub enum ServerMessage {
         blocks: Vec<Block>,
         /// The status of each.
         statuses: Vec<BlockStatus>,
+        /// All targets that blocks have been triggered for.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        targets: Vec<TargetStatus>,
     },
     /// What has changed: the newest per block.
     Changes {
@@ -46,6 +50,12 @@ pub enum ServerMessage {
         /// Deleted blocks.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         removed: Vec<BlockId>,
+        /// Targets that look different.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        targets: Vec<TargetStatus>,
+        /// Targets that no block needs any more.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        targets_removed: Vec<String>,
     },
     /// The answer to a command.
     Answer {

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use crate::config::Profile;
+use crate::wire::Epath;
 
 use super::status::Cause;
 use super::time::Instant;
@@ -31,10 +32,10 @@ pub struct TargetView {
 }
 
 /// An open class 3 connection.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConnectionView {
-    /// Encoded hops behind the TCP endpoint.
-    pub route: Vec<u8>,
+    /// The hops behind the TCP endpoint.
+    pub route: Epath,
     /// Bytes of a packet.
     pub size: u16,
     /// Requests answered over it.

@@ -83,7 +83,6 @@ fn finding(bench: &Workbench, typed: &str, path: &str) -> Option<AttrValue> {
     match path.parse::<TargetPath>() {
         Err(PathError::SerialPort) => Some(rule_text("path_serial_port", &[]).into()),
         Err(_) => Some(rule_text("path_bad_address", &[]).into()),
-        Ok(path) if !path.route.is_empty() => Some(rule_text("not_available_route", &[]).into()),
         Ok(path) => nowhere(bench, &path.target),
     }
 }

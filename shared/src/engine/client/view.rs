@@ -21,7 +21,7 @@ impl Client {
             .connections
             .iter()
             .map(|connection| ConnectionView {
-                route: connection.route.bytes(),
+                route: connection.route.clone(),
                 size: connection.size,
                 requests: connection.requests,
             })
