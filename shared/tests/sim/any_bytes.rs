@@ -1,8 +1,10 @@
 //! Any bytes at all.
 
-use cipdeck_shared::engine::time::Instant;
+use cipdeck_shared::engine::time::{Instant, Millis};
 use cipdeck_shared::sim::{Device, Fault, SimConfig, handle_datagram};
-use cipdeck_shared::wire::{Command, Encapsulation, EncapsulationStatus, GeneralStatus, MessageRouterReply};
+use cipdeck_shared::wire::{
+    Command, Deframer, Encapsulation, EncapsulationStatus, GeneralStatus, MessageRouterReply,
+};
 
 use super::frames::{at, frame, registered, rr, ud};
 use super::opening::{CLOSE, OPEN, along, with};
@@ -80,6 +82,37 @@ proptest! {
             (out, connection.is_closed())
         };
         prop_assert_eq!(answer(size), answer(usize::MAX));
+    }
+
+    #[test]
+    fn whatever_is_asked_and_whenever_everything_due_is_said_and_every_connection_ends(
+        parts in vec((frames(), 0_u64..20_000_000), 1..6), delay in 0_u64..50,
+    ) {
+        let config = SimConfig { delay: Millis(delay), max_connections: 2, ..SimConfig::default() };
+        let mut device = Device::new(config);
+        let (mut connection, _) = registered(&mut device);
+        let (mut now, mut out) = (at(1), Vec::new());
+        for (part, pause) in parts {
+            connection.handle_input(&mut device, &part, now);
+            now = Instant(now.0 + pause);
+            connection.poll_transmit(&mut out, now);
+            device.handle_timeout(now);
+            prop_assert!(connection.poll_timeout().is_none_or(|due| due > now));
+            prop_assert!(device.poll_timeout().is_none_or(|due| due > now));
+        }
+        while let Some(due) = connection.poll_timeout() {
+            prop_assert!(connection.poll_transmit(&mut out, due), "something is due when it says so");
+        }
+        while let Some(due) = device.poll_timeout() {
+            device.handle_timeout(due);
+        }
+        let done = device.counters();
+        prop_assert_eq!(done.opened, done.closed + done.timed_out + done.unregistered);
+        let mut deframer = Deframer::new();
+        deframer.push(&out);
+        while let Some(frame) = deframer.next_frame().unwrap() {
+            prop_assert!(matches!(frame.header.status.0, 0 | 1 | 3 | 0x64 | 0x65 | 0x69), "{:?}", frame.header);
+        }
     }
 
     #[test]

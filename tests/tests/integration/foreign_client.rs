@@ -83,9 +83,25 @@ async fn ciplink_reads_through_the_chassis_and_over_a_connection() {
 
 #[tokio::test]
 async fn ciplink_falls_back_to_a_small_connection() {
-    let device = Service::simulate("127.0.0.1:0", &["--no-large"]).await;
-    let asked = ask(&device, "", vec![name()]).await;
-    assert_eq!(asked[0].data(), Some(&b"\x12cipdeck demo drive"[..]));
+    for flags in [&["--no-large"][..], &["--connection-size", "500"]] {
+        let device = Service::simulate("127.0.0.1:0", flags).await;
+        let asked = ask(&device, "", vec![name()]).await;
+        assert_eq!(asked[0].data(), Some(&b"\x12cipdeck demo drive"[..]), "{flags:?}");
+        assert_eq!(counters(device).await, counted(0, 1, 1, 1), "{flags:?}");
+    }
+}
+
+#[tokio::test]
+async fn rseip_is_told_that_there_are_no_more_connections() {
+    let device = Service::simulate("127.0.0.1:0", &["--max-connections", "1"]).await;
+    let mut first = EipConnection::new(address(&device), options(None));
+    let serial: u32 = first.get_attribute_single(path(1, 1, 6)).await.expect("a serial number");
+    assert_eq!(serial, 0x00C1_DEC0);
+    let mut second = EipConnection::new(address(&device), options(None));
+    let refused: Result<u32, _> = second.get_attribute_single(path(1, 1, 6)).await;
+    let refused = refused.expect_err("one is all").to_string();
+    assert!(refused.contains("forward open failed"), "{refused}");
+    first.close().await.expect("Forward_Close is answered");
     assert_eq!(counters(device).await, counted(0, 1, 1, 1));
 }
 
