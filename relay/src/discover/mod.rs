@@ -97,6 +97,10 @@ impl Search {
         }
         while let Ok(Some((from, datagram))) = tokio::time::timeout_at(deadline, heard.recv()).await {
             collector.take(from, &datagram);
+            if Instant::now() >= deadline {
+                // Whoever never stops talking is not listened to for longer.
+                break;
+            }
         }
         let devices = collector.finish(&mut errors);
         Discovered { devices, errors }

@@ -64,6 +64,16 @@ async fn the_built_in_device_is_recorded_with_made_up_addresses() {
 }
 
 #[tokio::test]
+async fn a_block_from_a_file_is_recorded_as_well() {
+    let folder = TempDir::new().unwrap();
+    let (block, file) = (folder.path().join("block.json"), file_in(folder.path()));
+    std::fs::write(&block, block::product_name("0,0").to_string()).unwrap();
+    let ended = cipdeck(&["run", block.to_str().unwrap(), "--pcap", file.to_str().unwrap()]).await;
+    assert_eq!(ended.code, 0, "{ended:?}");
+    Recording { ended, folder }.has_messages(44_818, 1).await;
+}
+
+#[tokio::test]
 async fn requests_of_all_shapes_are_understood() {
     let simulator = Service::simulate("127.0.0.1:0", &[]).await;
     let address: SocketAddr = simulator.address.parse().unwrap();

@@ -19,7 +19,7 @@ const LIST_SERVICES: u16 = 0x04;
 async fn the_simulated_device_introduces_itself() {
     let simulator = Service::simulate("127.0.0.1:0", &[]).await;
     let port: u16 = simulator.address.rsplit(':').next().unwrap().parse().unwrap();
-    let ended = cipdeck(&["discover", &simulator.address, "--json"]).await;
+    let ended = cipdeck(&["discover", &simulator.address, "--timeout", "2000", "--json"]).await;
     assert_eq!(ended.code, 0, "{ended:?}");
     assert_eq!(
         ended.json(),
@@ -33,7 +33,7 @@ async fn the_simulated_device_introduces_itself() {
             "state": "operational", "state_code": 3,
         }])
     );
-    let ended = cipdeck(&["discover", &simulator.address, "--timeout", "300"]).await;
+    let ended = cipdeck(&["discover", &simulator.address, "--timeout", "2000"]).await;
     assert_eq!(ended.code, 0, "{ended:?}");
     let lines: Vec<_> = ended.stdout.lines().collect();
     assert_eq!(lines.len(), 2, "{ended:?}");
@@ -43,7 +43,7 @@ async fn the_simulated_device_introduces_itself() {
 #[tokio::test]
 async fn cpppo_introduces_itself() {
     let cpppo = Cpppo::start().await;
-    let ended = cipdeck(&["discover", &cpppo.udp().to_string(), "--json"]).await;
+    let ended = cipdeck(&["discover", &cpppo.udp().to_string(), "--timeout", "3000", "--json"]).await;
     let devices = ended.json();
     assert_eq!(devices.as_array().map(Vec::len), Some(1), "{ended:?}");
     assert_eq!(devices[0]["name"], Cpppo::PRODUCT_NAME);
@@ -72,7 +72,7 @@ async fn garbage_and_repetitions_do_not_hide_the_devices() {
         ]
     })
     .await;
-    let ended = cipdeck(&["discover", &responder.address, "--json"]).await;
+    let ended = cipdeck(&["discover", &responder.address, "--timeout", "2000", "--json"]).await;
     assert_eq!(ended.code, 0, "{ended:?}");
     assert_eq!(members(&ended.json(), "name"), ["pump", "fan"]);
     assert_eq!(members(&ended.json(), "serial"), ["00000007", "00000008"]);
@@ -97,7 +97,7 @@ async fn one_question_of_24_bytes_is_asked() {
 async fn everybody_in_an_own_network_is_asked_by_its_broadcast_address() {
     let responder =
         Responder::start("127.255.255.255:0", |context| vec![identity(*context, 7, "pump")]).await;
-    let ended = cipdeck(&["discover", &responder.address, "--json"]).await;
+    let ended = cipdeck(&["discover", &responder.address, "--timeout", "2000", "--json"]).await;
     assert_eq!(members(&ended.json(), "name"), ["pump"], "{ended:?}");
     assert_eq!(members(&ended.json(), "address"), ["127.0.0.1"], "who has answered, not who was asked");
 }
@@ -135,11 +135,11 @@ async fn what_may_not_be_asked_exits_with_2() {
 async fn rest_finds_the_same_devices() {
     let simulator = Service::simulate("127.0.0.1:0", &[]).await;
     let relay = Relay::start().await;
-    let request = json!({ "addresses": [simulator.address], "timeout_ms": 500 });
+    let request = json!({ "addresses": [simulator.address], "timeout_ms": 2_000 });
     let reply = relay.rest.post("discover", &request).await;
     assert_eq!(reply.status, 200, "{reply:?}");
     assert_eq!(reply.body["errors"], json!([]));
-    let by_command = cipdeck(&["discover", &simulator.address, "--json"]).await;
+    let by_command = cipdeck(&["discover", &simulator.address, "--timeout", "2000", "--json"]).await;
     assert_eq!(reply.body["devices"], by_command.json());
 }
 
