@@ -26,11 +26,13 @@ impl Device {
         let empty = send.route.is_empty();
         let result = follow(&self.modules, module, &mut send.route).and_then(|target| {
             let remaining = words(&send.route);
-            match () {
-                () if empty || remaining > 0 => Err(Stuck { status: INVALID_SEGMENT, remaining }),
-                () if caller.depth == MAX_DEPTH => Err(Stuck { status: NO_BUFFER, remaining }),
-                () => Ok(target),
+            if empty || remaining > 0 {
+                return Err(Stuck { status: INVALID_SEGMENT, remaining });
             }
+            if caller.depth == MAX_DEPTH {
+                return Err(Stuck { status: NO_BUFFER, remaining });
+            }
+            Ok(target)
         });
         match result {
             Ok(target) => self.ask(target, send.message, Caller { depth: caller.depth + 1, ..caller }, now),
