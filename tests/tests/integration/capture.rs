@@ -56,6 +56,43 @@ async fn everything_that_is_sent_to_cpppo_is_recorded() {
 }
 
 #[tokio::test]
+async fn routed_messages_are_recorded() {
+    let simulator = Service::simulate("127.0.0.1:0", &[]).await;
+    let address: SocketAddr = simulator.address.parse().unwrap();
+    for (route, answer) in
+        [(",1,0", "cip.service == 0x8e && cip.genstat == 0"), (",1,9", "cip.cm.ext_status == 0x0312")]
+    {
+        let recording = Recording::of(&(fake_plc::path(address) + route), &[]).await;
+        let capture = recording.capture(address.port());
+        capture.is_clean().await;
+        let (capture, _folder) = capture.at_usual_port().await;
+        assert_eq!(capture.packets("cip.service == 0x52").await.len(), 1, "{route}");
+        assert_eq!(capture.packets(answer).await.len(), 1, "{route}");
+    }
+}
+
+#[tokio::test]
+async fn connected_messages_are_recorded_with_their_connection() {
+    let simulator = Service::simulate("127.0.0.1:0", &[]).await;
+    let adapter = CiplinkAdapter::start();
+    let cpppo = Cpppo::start().await;
+    let simulator: SocketAddr = simulator.address.parse().unwrap();
+    for path in [fake_plc::path(simulator), adapter.path(), cpppo.path()] {
+        let recording = Recording::of(&path, &["--connected", "--repeat", "3"]).await;
+        assert_eq!(recording.ended.code, 0, "{:?}", recording.ended);
+        let capture = recording.capture(port(&path));
+        capture.is_clean().await;
+        let commands = capture.counts("enip.command", ["0x0065", "0x0070", "0x0066"]).await;
+        assert_eq!(commands, [2, 6, 1], "one session, three requests and replies on a connection: {path}");
+        let [large, classic, request, close] =
+            capture.counts("cip.service", ["0x5b", "0x54", "0x0e", "0x4e"]).await;
+        assert_eq!((large + classic, request, close), (1, 3, 1), "{path}");
+        let frames = capture.packets("enip").await.len();
+        assert_eq!(frames, capture.packets("tcp.len > 0").await.len(), "everything is dissected");
+    }
+}
+
+#[tokio::test]
 async fn the_built_in_device_is_recorded_with_made_up_addresses() {
     let recording = Recording::of("0,0", &[]).await;
     recording.has_messages(44_818, 1).await;

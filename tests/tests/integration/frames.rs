@@ -11,13 +11,12 @@ use cipdeck_shared::wire::{
     RequestTimeout, SendRrData, SenderContext, SessionHandle, TimeoutMultiplier, UnconnectedMessage,
     UnconnectedSend,
 };
-use cipdeck_tests::tshark::Capture;
+use cipdeck_tests::tshark::{Capture, USUAL_PORT};
 use tempfile::TempDir;
 
 #[path = "../../../shared/tests/common/mod.rs"]
 mod golden;
 
-const PORT: u16 = 44_818;
 const PRODUCT_NAME: [u8; 8] = [0x0E, 0x03, 0x20, 0x01, 0x24, 0x01, 0x30, 0x07];
 
 #[tokio::test]
@@ -32,8 +31,10 @@ async fn every_frame_of_the_suite() {
         if conversations.last().is_none_or(|(last, _)| last != subject) {
             // Each request with its reply on a connection of its own: together they are no dialogue.
             let number = u16::try_from(conversations.len()).unwrap();
-            let ends =
-                Ends { local: ([10, 0, 0, 1], 50_000 + number).into(), peer: ([10, 0, 0, 2], PORT).into() };
+            let ends = Ends {
+                local: ([10, 0, 0, 1], 50_000 + number).into(),
+                peer: ([10, 0, 0, 2], USUAL_PORT).into(),
+            };
             let (conversation, packets) = Conversation::open(ends, at);
             file.write(&packets).unwrap();
             conversations.push((subject.to_owned(), conversation));
@@ -42,7 +43,7 @@ async fn every_frame_of_the_suite() {
         let direction = if answer.is_some() { Direction::In } else { Direction::Out };
         file.write(&conversation.data(direction, frame, at)).unwrap();
     }
-    let (capture, _folder) = stored(file);
+    let (capture, _folder) = Capture::stored(file, USUAL_PORT);
     capture.is_clean().await;
     assert_eq!(capture.packets("enip").await.len(), frames.len());
 }
@@ -70,13 +71,8 @@ async fn routes() {
     }
     let (capture, _folder) = dialogue.end();
     capture.is_clean().await;
-    assert_eq!(capture.packets("cip.service == 0x52").await.len(), 8);
-    assert_eq!(capture.packets("cip.service == 0x8e && cip.genstat == 0").await.len(), 3);
-    assert_eq!(capture.packets("cip.service == 0xd2").await.len(), 5);
-    for (status, replies) in [("0x0204", 1), ("0x0311", 3), ("0x0312", 1)] {
-        let found = capture.packets(&format!("cip.cm.ext_status == {status}")).await;
-        assert_eq!(found.len(), replies, "{status}: {found:?}");
-    }
+    assert_eq!(capture.counts("cip.service", ["0x52", "0x8e", "0xd2"]).await, [8, 3, 5]);
+    assert_eq!(capture.counts("cip.cm.ext_status", ["0x0204", "0x0311", "0x0312"]).await, [1, 3, 1]);
     // 4 x 752 ms, rounded up to what a tick can say.
     let timeouts = capture.field("cip.service == 0x52", "cip.cm.timeout").await;
     assert!(timeouts.iter().all(|timeout| timeout == "3008"), "{timeouts:?}");
@@ -101,19 +97,10 @@ async fn connections() {
     }
     let (capture, _folder) = dialogue.end();
     capture.is_clean().await;
-    for (what, expected) in [
-        ("cip.service == 0x5b", 1),
-        ("cip.service == 0xdb && cip.genstat == 0", 1),
-        ("cip.service == 0x54", 1),
-        ("cip.service == 0xd4 && cip.genstat == 0", 1),
-        ("enip.command == 0x0070", 12),
-        ("cip.service == 0x8e && cip.genstat == 0", 6),
-        ("cip.service == 0x4e", 4),
-        ("cip.service == 0xce && cip.genstat == 0", 2),
-        ("cip.service == 0xce && cip.genstat == 1", 2),
-    ] {
-        assert_eq!(capture.packets(what).await.len(), expected, "{what}");
-    }
+    assert_eq!(capture.counts("enip.command", ["0x0070"]).await, [12]);
+    let services = ["0x5b", "0xdb", "0x54", "0xd4", "0x0e", "0x8e", "0x4e", "0xce"];
+    assert_eq!(capture.counts("cip.service", services).await, [1, 1, 1, 1, 6, 6, 4, 4]);
+    assert_eq!(capture.packets("cip.service & 0x80 && cip.genstat != 0").await.len(), 2, "the second closes");
 }
 
 /// A client of the wire level and the simulated device, without sockets.
@@ -129,7 +116,7 @@ struct Dialogue {
 impl Dialogue {
     /// With a session.
     fn start() -> Self {
-        let ends = Ends { local: ([10, 0, 0, 1], 50_000).into(), peer: ([10, 0, 0, 2], PORT).into() };
+        let ends = Ends { local: ([10, 0, 0, 1], 50_000).into(), peer: ([10, 0, 0, 2], USUAL_PORT).into() };
         let (conversation, packets) = Conversation::open(ends, SystemTime::now());
         let mut file = CaptureFile::new(Vec::new()).expect("memory takes everything");
         file.write(&packets).expect("memory takes everything");
@@ -163,7 +150,7 @@ impl Dialogue {
     fn end(mut self) -> (Capture, TempDir) {
         let farewell = frame(self.header(Command::UnRegisterSession), &[]);
         self.record(Direction::Out, &farewell);
-        stored(self.file)
+        Capture::stored(self.file, USUAL_PORT)
     }
 
     fn exchange(&mut self, request: &[u8]) -> Vec<u8> {
@@ -210,12 +197,4 @@ fn frame(header: Header, data: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     Encapsulation::new(header, data).expect("a short frame").encode(&mut out);
     out
-}
-
-/// The file on the disk, as long as its folder is kept.
-fn stored(file: CaptureFile<Vec<u8>>) -> (Capture, TempDir) {
-    let folder = TempDir::new().expect("a temporary folder");
-    let path = folder.path().join("frames.pcapng");
-    std::fs::write(&path, file.into_inner()).expect("a file");
-    (Capture { file: path, port: PORT }, folder)
 }
