@@ -1,7 +1,7 @@
 //! An error in words: what the numbers mean, what happened, and how well that is known.
 
 use cipdeck_shared::api::BlockStatus;
-use cipdeck_shared::engine::{Cause, CauseKind};
+use cipdeck_shared::engine::{Cause, CauseKind, RefusedBy};
 use cipdeck_shared::table::{self, Entry};
 use cipdeck_shared::wire::{EncapsulationStatus, GeneralStatus};
 
@@ -13,8 +13,9 @@ pub(super) fn sentences(block: &BlockStatus) -> Vec<String> {
     if status.error_id == 224 {
         let general = GeneralStatus(u8::try_from(status.sub_error_id).unwrap_or(u8::MAX));
         let what = format!(
-            "{numbers} ExtErrorID {}: the device refused with general status {general}",
-            status.ext_error_id
+            "{numbers} ExtErrorID {}: {} refused with general status {general}",
+            status.ext_error_id,
+            who(block.cause.as_ref().and_then(|cause| cause.by))
         );
         sentences.push(entry(&what, table::general_status(general)));
         let extended = block.cause.as_ref().and_then(|cause| cause.additional.first());
@@ -33,6 +34,16 @@ pub(super) fn sentences(block: &BlockStatus) -> Vec<String> {
     sentences
 }
 
+fn who(by: Option<RefusedBy>) -> &'static str {
+    match by {
+        None => "the device",
+        Some(RefusedBy::Router) => "a router on the way, not the device,",
+        Some(RefusedBy::ForwardOpen) => {
+            "the Connection Manager, asked to open the connection (Forward_Open),"
+        }
+    }
+}
+
 /// What happened beside the numbers.
 fn happened(cause: &Cause) -> Vec<String> {
     let mut sentences = Vec::new();
@@ -47,7 +58,7 @@ fn happened(cause: &Cause) -> Vec<String> {
         }
         CauseKind::Malformed => Some("The answer made no sense."),
         CauseKind::Closed => Some("The target closed the connection."),
-        CauseKind::Limit => Some("All 16 sessions of the controller are in use."),
+        CauseKind::Limit => Some("All 16 sessions, or all 16 connections, of the controller are in use."),
         CauseKind::TooSmall => Some("The reply is longer than ResDataSize."),
         CauseKind::Invalid => Some("The configuration has errors."),
         CauseKind::Cancelled => Some("It was cancelled."),
@@ -59,6 +70,9 @@ fn happened(cause: &Cause) -> Vec<String> {
     if let Some(code) = cause.status {
         let named = table::encapsulation_status(EncapsulationStatus(code));
         sentences.push(entry(&format!("encapsulation status 0x{code:02x}"), named));
+    }
+    if let Some(words) = cause.remaining_path.filter(|words| *words > 0) {
+        sentences.push(format!("Where it was refused, {words} word(s) of the route were left."));
     }
     if let Some(detail) = &cause.detail {
         sentences.push(format!("{detail}."));
@@ -99,6 +113,23 @@ mod tests {
         for part in ["ErrorID 224 SubErrorID 5", "0x05", "Path destination unknown", "(confirmed)"] {
             assert!(text.contains(part), "{text}");
         }
+    }
+
+    #[test]
+    fn a_refusal_on_the_way_is_not_said_to_be_the_device_s() {
+        let by = |by| Cause {
+            by: Some(by),
+            remaining_path: Some(1),
+            additional: vec![0x0312],
+            ..Cause::new(CauseKind::RefusedByDevice)
+        };
+        let text = failed(224, 1, by(RefusedBy::Router));
+        for part in
+            ["a router on the way, not the device, refused", "0x0312: Link address not valid", "1 word(s)"]
+        {
+            assert!(text.contains(part), "{text}");
+        }
+        assert!(failed(224, 1, by(RefusedBy::ForwardOpen)).contains("Forward_Open"));
     }
 
     #[test]

@@ -16,14 +16,3 @@ pub struct Block {
     #[serde(flatten)]
     pub config: MsgCipGeneric,
 }
-
-/// Whose limits apply to a block's messages.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Channel {
-    /// As the controller: 4 buffers in all, 16 sessions.
-    #[default]
-    Controller,
-    /// No limit of buffers or sessions.
-    Monitor,
-}

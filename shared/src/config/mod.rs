@@ -5,14 +5,16 @@
 
 mod block;
 mod block_id;
+mod channel;
 mod hex;
 mod msg_cip_generic;
 mod number;
 mod profile;
 mod target_path;
 
-pub use self::block::{Block, Channel};
+pub use self::block::Block;
 pub use self::block_id::BlockId;
+pub use self::channel::{Channel, FurtherChannel, UnknownChannel};
 pub use self::hex::{HexError, HexErrorKind, read_hex, space_hex, write_hex};
 pub use self::msg_cip_generic::{
     CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,

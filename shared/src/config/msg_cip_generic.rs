@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::block::Channel;
+use super::channel::Channel;
 use super::profile::Profile;
 
 /// The `kind` of every block today.

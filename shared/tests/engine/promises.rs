@@ -229,6 +229,11 @@ fn four_dead_targets_stall_the_controller_but_not_the_monitor() {
     let stalled = owner.view(BlockId(5));
     assert_eq!((stalled.phase, stalled.position, stalled.status.status_bits.0), (Phase::Waiting, 1, 1));
     assert_eq!(owner.view(BlockId(6)).phase, Phase::Connecting);
+    owner.put(BlockId(7), "4,10.0.0.7", |config| {
+        config.channel = "controller2".to_owned().try_into().unwrap();
+    });
+    owner.run(BlockId(7)).unwrap();
+    assert_eq!(owner.view(BlockId(7)).phase, Phase::Connecting, "a channel has buffers of its own");
     let first = owner.open[0].0;
     owner.connect_failed(first);
     assert_eq!(owner.view(BlockId(5)).phase, Phase::Connecting, "the freed buffer goes to who waits");

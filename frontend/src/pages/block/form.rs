@@ -122,20 +122,14 @@ fn connection_words(subject: &Subject) -> AttrValue {
 }
 
 fn channel(subject: &Subject, edit: &Callback<Edit>) -> Html {
-    let value = match subject.draft.config.channel {
-        Channel::Controller => "controller",
-        Channel::Monitor => "monitor",
-    };
     SelectField {
         id: "field-Channel".into(),
         name: "Channel".into(),
         label: "Channel".into(),
-        value: value.into(),
+        value: String::from(subject.draft.config.channel).into(),
         choices: [("controller", tr!("form.channel_controller")), ("monitor", tr!("form.channel_monitor"))],
         remarks: Vec::new(),
-        on_choice: edit.reform(|value: String| {
-            Edit::Channel(if value == "monitor" { Channel::Monitor } else { Channel::Controller })
-        }),
+        on_choice: edit.reform(|value: String| Edit::Channel(Channel::try_from(value).unwrap_or_default())),
     }
     .draw()
 }

@@ -149,7 +149,7 @@ impl Engine {
             resent: false,
         };
         let plan = Arc::clone(&job.plan);
-        if channel == Channel::Controller
+        if channel != Channel::Monitor
             && !(self.session_for_controller(&target, now) && self.connection_for_controller(&plan, now))
         {
             self.step(block, Input::BufferGranted, now);
@@ -157,7 +157,7 @@ impl Engine {
         }
         self.clients.entry(target.clone()).or_default();
         self.client(&target, now, |client, cx| {
-            client.controller |= channel == Channel::Controller;
+            client.controller |= channel != Channel::Monitor;
             client.submit(job, cx);
         });
     }
@@ -181,17 +181,18 @@ impl Engine {
             Some(active) if active.granted => {
                 self.clients.get(&active.target).map_or(0, |client| client.position(block))
             }
-            Some(Active { channel: Channel::Controller, .. }) => self.controller.position(block),
-            Some(Active { channel: Channel::Monitor, .. }) => self.monitor.position(block),
+            Some(active) => {
+                let index = active.channel.of_controller();
+                let buffers = index.and_then(|index| self.controllers.get(index)).unwrap_or(&self.monitor);
+                buffers.position(block)
+            }
             None => 0,
         }
     }
 
-    pub(super) const fn buffers(&mut self, channel: Channel) -> &mut Buffers {
-        match channel {
-            Channel::Controller => &mut self.controller,
-            Channel::Monitor => &mut self.monitor,
-        }
+    pub(super) fn buffers(&mut self, channel: Channel) -> &mut Buffers {
+        let index = channel.of_controller();
+        index.and_then(|index| self.controllers.get_mut(index)).unwrap_or(&mut self.monitor)
     }
 
     pub(super) fn rearm(&mut self, block: BlockId) {

@@ -7,7 +7,7 @@ use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::{BlockId, Target};
+use crate::config::{BlockId, Channel, Target};
 use crate::plan::{Finding, MessagePlan};
 
 use crate::engine::block::{BlockView, Input};
@@ -24,7 +24,7 @@ use crate::engine::time::Instant;
 #[derive(Debug)]
 pub struct Engine {
     blocks: BTreeMap<BlockId, Entry>,
-    controller: Buffers,
+    controllers: [Buffers; Channel::CONTROLLERS],
     monitor: Buffers,
     clients: BTreeMap<Target, Client>,
     links: BTreeMap<LinkId, Target>,
@@ -64,7 +64,7 @@ impl Engine {
     pub const fn with_originator(originator: Originator) -> Self {
         Self {
             blocks: BTreeMap::new(),
-            controller: Buffers::controller(),
+            controllers: [const { Buffers::controller() }; Channel::CONTROLLERS],
             monitor: Buffers::monitor(),
             clients: BTreeMap::new(),
             links: BTreeMap::new(),
