@@ -1,5 +1,5 @@
-//! Exit codes: 0 success; 1 internal, or cannot listen; 2 usage or error findings; 3 `ErrorID` 224; 4 everything else
-//! (timeout, refused, malformed, nobody answered).
+//! Exit codes: 0 success; 1 internal, cannot listen, or cannot write a capture; 2 usage or error findings; 3 `ErrorID`
+//! 224; 4 everything else (timeout, refused, malformed, nobody answered).
 
 use std::process::ExitCode;
 

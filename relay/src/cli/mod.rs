@@ -29,8 +29,9 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit: 0 success; 1 internal, or cannot listen; 2 usage or error findings; 3 the device \
-                          refused (ErrorID 224); 4 everything else (timeout, refused, malformed, nobody answered)";
+const EXIT_CODES: &str = "Exit: 0 success; 1 internal, cannot listen, or cannot write a capture; 2 usage or error \
+                          findings; 3 the device refused (ErrorID 224); 4 everything else (timeout, refused, \
+                          malformed, nobody answered)";
 
 #[derive(Clone, Debug, Args)]
 struct Logging {

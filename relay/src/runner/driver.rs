@@ -2,6 +2,7 @@
 
 use std::io;
 use std::pin::pin;
+use std::time::SystemTime;
 
 use cipdeck_shared::engine::LinkId;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
@@ -11,8 +12,8 @@ use tokio::sync::Notify;
 pub(super) trait Machine {
     /// Appends what is to be written now: everything there is. Whoever has more wakes the driver again.
     fn poll_transmit(&self, link: LinkId, out: &mut Vec<u8>) -> bool;
-    /// Hears what has been written.
-    fn written(&self, link: LinkId, bytes: &[u8]);
+    /// Hears what has been written, and when the write began: the answer may be there before it returns.
+    fn written(&self, link: LinkId, bytes: &[u8], at: SystemTime);
     /// Takes what was read.
     fn handle_input(&self, link: LinkId, bytes: &[u8]);
 }
@@ -39,9 +40,10 @@ where
                 woken.set(wake.notified());
                 if machine.poll_transmit(link, &mut out) {
                     tracing::trace!(link = link.0, bytes = ?out, "write");
-                    io.write_all(&out).await?;
+                    let at = SystemTime::now();
+            io.write_all(&out).await?;
                     io.flush().await?;
-                    machine.written(link, &out);
+                    machine.written(link, &out, at);
                     out.clear();
                 }
             }
@@ -84,7 +86,7 @@ mod tests {
             !out.is_empty()
         }
 
-        fn written(&self, _: LinkId, _: &[u8]) {}
+        fn written(&self, _: LinkId, _: &[u8], _: SystemTime) {}
 
         fn handle_input(&self, _: LinkId, bytes: &[u8]) {
             self.bytes.lock().unwrap().extend(bytes.iter().map(|byte| byte + 1));

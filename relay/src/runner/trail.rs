@@ -24,7 +24,7 @@ pub struct Ends {
 pub(crate) struct Trace {
     /// The connection that carried it.
     pub(crate) ends: Ends,
-    /// After the write; `None` when nothing was written.
+    /// When the write began; `None` when nothing was written.
     pub(crate) wrote: Option<SystemTime>,
     /// After the read; `None` when nothing was read.
     pub(crate) read: Option<SystemTime>,
@@ -111,8 +111,7 @@ impl Carrier {
         *lock(&self.closed_by) = Direction::In;
     }
 
-    fn moved(&self, direction: Direction, bytes: &[u8]) {
-        let at = SystemTime::now();
+    fn moved(&self, direction: Direction, bytes: &[u8], at: SystemTime) {
         self.trail.moved(direction, at);
         if let Some(tap) = &self.inner.tap {
             tap.moved(self.link, direction, bytes, at);
@@ -134,12 +133,12 @@ impl Machine for Carrier {
         self.inner.with(|state, now| state.engine.poll_transmit(link, out, now))
     }
 
-    fn written(&self, _: LinkId, bytes: &[u8]) {
-        self.moved(Direction::Out, bytes);
+    fn written(&self, _: LinkId, bytes: &[u8], at: SystemTime) {
+        self.moved(Direction::Out, bytes, at);
     }
 
     fn handle_input(&self, link: LinkId, bytes: &[u8]) {
-        self.moved(Direction::In, bytes);
+        self.moved(Direction::In, bytes, SystemTime::now());
         self.inner.with(|state, now| state.engine.handle_input(link, bytes, now));
     }
 }
