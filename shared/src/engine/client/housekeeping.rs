@@ -5,6 +5,7 @@ use crate::wire::{
     ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouterRequest, RequestTimeout, ServiceCode,
 };
 
+use crate::engine::block::Input;
 use crate::engine::session::Expected;
 use crate::engine::status::{Cause, CauseKind};
 use crate::engine::time::{Instant, Millis};
@@ -18,10 +19,16 @@ const CLOSING_TIME: Millis = Millis(500);
 const CLOSE_TIME: Millis = Millis(500);
 
 /// How long the target has for saying who it is; afterwards it is nothing special.
-const IDENTIFY_TIME: Millis = Millis(500);
+const IDENTIFY_TIME: Millis = Millis(200);
 
 /// How long the target has for the answer to a read that keeps it alive.
 const KEEP_ALIVE_TIME: Millis = Millis(3_000);
+
+/// Connections of earlier sockets that are remembered.
+const MAX_LOST: usize = 16;
+
+/// The router's own time for Forward_Close.
+const ROUTER_TIME_MS: u32 = 1_000;
 
 /// Identity, status: every device has it.
 const STATUS_ATTRIBUTE: u32 = 5;
@@ -90,7 +97,7 @@ impl Client {
     fn give_up(&mut self, what: &What, cx: &mut Context<'_>) {
         match what {
             // A late ListIdentity reply answers nothing: no other command has that reply.
-            What::Identify => self.identified(None),
+            What::Identify => self.identified(None, cx),
             What::KeepAlive(_) => {
                 self.error = Some(Cause::new(CauseKind::Timeout));
                 self.disconnect(cx);
@@ -118,9 +125,25 @@ impl Client {
     pub(super) fn close_connection(&mut self, index: usize, cx: &mut Context<'_>) {
         let connection = self.connections.swap_remove(index);
         self.changed = true;
-        if let Ok(request) = connection.close_request(RequestTimeout::at_least(1_000)) {
+        if let Ok(request) = connection.close_request(RequestTimeout::at_least(ROUTER_TIME_MS)) {
             self.send_own(What::Close, &request, 1, Some(cx.now + CLOSE_TIME), cx);
         }
+    }
+
+    /// The socket is gone: the target may keep its connections until their watchdog.
+    pub(super) fn lose_connections(&mut self) {
+        for connection in self.connections.drain(..) {
+            self.lost.extend(connection.close_request(RequestTimeout::at_least(ROUTER_TIME_MS)).ok());
+        }
+        let surplus = self.lost.len().saturating_sub(MAX_LOST);
+        self.lost.drain(..surplus);
+    }
+
+    /// Closes one connection of an earlier socket, if there is one.
+    pub(super) fn close_lost(&mut self, cx: &mut Context<'_>) -> bool {
+        let Some(request) = self.lost.pop_front() else { return false };
+        self.send_own(What::Close, &request, 1, Some(cx.now + CLOSE_TIME), cx);
+        true
     }
 
     pub(super) fn unregister(&mut self, cx: &mut Context<'_>) {
@@ -129,7 +152,6 @@ impl Client {
             let id = *id;
             session.unregister(context, &mut self.transmit);
             self.link = Link::Closing(id, cx.now + CLOSING_TIME);
-            self.connections.clear();
             self.changed = true;
             cx.out.push_back(Output::Transmit(id));
         }
@@ -145,10 +167,13 @@ impl Client {
         }
     }
 
-    pub(super) fn identified(&mut self, profile: Option<Profile>) {
+    pub(super) fn identified(&mut self, profile: Option<Profile>, cx: &mut Context<'_>) {
         self.known.anonymous |= profile.is_none();
         self.known.identity = profile;
         self.changed = true;
+        if let Some(job) = self.queue.front() {
+            cx.out.push_back(Output::Block(job.block, Input::ConnectEnded));
+        }
     }
 
     /// Reads the device's status over the connection that was used least recently, or without one.

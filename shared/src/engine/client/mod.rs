@@ -68,6 +68,8 @@ pub(super) struct Client {
     asking: Option<(BlockId, u64)>,
     outstanding: Option<Outstanding>,
     connections: Vec<Connection>,
+    /// Requests that close what an earlier socket has left open at the target: it may have room for few.
+    lost: VecDeque<Vec<u8>>,
     /// Bytes for the socket.
     transmit: Vec<u8>,
     next_context: u64,
@@ -358,7 +360,8 @@ impl Client {
     fn forget_link(&mut self) {
         self.changed |= self.link_id().is_some();
         self.link = Link::None;
-        self.connections.clear();
+        self.lose_connections();
+        self.controller &= !self.is_idle();
         self.known.identity = None;
         self.transmit.clear();
         self.asking = None;

@@ -1,5 +1,7 @@
 //! What is done next: connect, find out who it is, open or close a connection, or ask for permission to send.
 
+use alloc::sync::Arc;
+
 use crate::config::Profile;
 use crate::plan::MessagePlan;
 use crate::wire::{RequestTimeout, UnconnectedMessage};
@@ -46,8 +48,9 @@ impl Client {
             }
             return;
         };
-        let plan = alloc::sync::Arc::clone(&job.plan);
+        let (block, plan) = (job.block, Arc::clone(&job.plan));
         if self.known.identity.is_none() && !self.known.anonymous && needs_identity(&plan) {
+            cx.out.push_back(Output::Block(block, Input::ConnectStarted));
             return self.identify(cx);
         }
         if plan.connection().is_some() {
@@ -59,8 +62,11 @@ impl Client {
                 }
                 Some(_) => {}
                 None => {
+                    cx.out.push_back(Output::Block(block, Input::ConnectStarted));
+                    if self.close_lost(cx) {
+                        return;
+                    }
                     let opening = Opening::new(&plan, profile, cx.originator);
-                    cx.out.push_back(Output::Block(job.block, Input::ConnectStarted));
                     return self.open(opening, cx);
                 }
             }

@@ -47,7 +47,7 @@ impl Client {
                 self.outstanding.take_if(|outstanding| matches!(outstanding.what, What::Identify));
                 let profile =
                     item.map(|item| Profile::of_identity(item.vendor, item.device_type, item.name.bytes()));
-                self.identified(profile);
+                self.identified(profile, cx);
             }
             Received::Reply { message, at, frame, id } => {
                 self.answers();
