@@ -5,6 +5,7 @@ mod bench;
 mod check;
 mod dist;
 mod frontend;
+mod fuzz;
 mod page;
 mod process;
 mod report;
@@ -55,7 +56,7 @@ enum Task {
     },
     /// Installs what is missing and runs all tests.
     Test {
-        /// Also what takes long.
+        /// Also what takes long: fuzzing, one minute for each target.
         #[arg(long)]
         long: bool,
         #[command(flatten)]

@@ -6,6 +6,7 @@ use anyhow::Result;
 
 use crate::{
     frontend::{self, Profile},
+    fuzz,
     process::{cargo, program, run},
     report::Report,
     toolchain::{self, Preference, WASM, WasmToolchain},
@@ -31,7 +32,7 @@ pub(crate) fn all(report: &mut Report, preference: Preference, long: bool) -> Re
     })?;
     report.step("tests: integration, other implementations, browser journeys", || journeys(&tools))?;
     if long {
-        report.say("--long: there are no long tests (fuzzing, soak, scale) yet");
+        fuzz::all(report, FUZZ_SECONDS)?;
     }
     Ok(())
 }
@@ -80,5 +81,8 @@ fn in_browser(command: &mut Command, tools: &TestTools) -> Result<()> {
 
 /// The page's own profile, so that its dependencies are compiled once.
 const PROFILE: &str = "page";
+
+/// Of each target.
+const FUZZ_SECONDS: u64 = 60;
 
 const SECONDS_PER_TEST: &str = "120";

@@ -46,6 +46,11 @@ pub(crate) fn cargo_deny() -> Result<()> {
     install("cargo-deny", CARGO_DENY, &["--locked"])
 }
 
+/// Installs cargo-fuzz if it is missing.
+pub(crate) fn cargo_fuzz() -> Result<()> {
+    install("cargo-fuzz", CARGO_FUZZ, &["--locked"])
+}
+
 /// The search path with `target/tools/bin` in front.
 pub(crate) fn path() -> Result<OsString> {
     let present = env::var_os("PATH").unwrap_or_default();
@@ -147,4 +152,5 @@ fn folder() -> PathBuf {
 
 const WASM_PACK: &str = "0.15.1";
 const CARGO_DENY: &str = "0.20.2";
+const CARGO_FUZZ: &str = "0.13.1";
 const CPPPO: &str = "5.2.5";
