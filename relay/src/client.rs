@@ -9,7 +9,7 @@
 //! let config = MsgCipGeneric::product_name("4,192.168.1.100");
 //! let mut message = client.message(&config).map_err(|findings| format!("{findings:?}"))?;
 //! let answer = message.run().await?;
-//! println!("{:?} {:02x?}", answer.view.status, answer.exchange.response);
+//! println!("{:?} {:02x?}", answer.view.status, answer.exchange.response());
 //! client.stop().await;
 //! # Ok(())
 //! # }
@@ -132,6 +132,10 @@ impl Drop for Message {
 struct Nobody;
 
 impl Observer for Nobody {
+    fn watches(&self) -> bool {
+        false
+    }
+
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
     fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {

@@ -119,7 +119,11 @@ impl Bench {
             }
             // The built-in device is always there.
             Event::Target { .. } => {}
-            Event::Changed { block, view } => return Some(News::Changed(block, view)),
+            Event::Changed { block, edge } => {
+                let view = self.engine.glance(block)?;
+                let edges = edge.into_iter().collect();
+                return Some(News::Changed(block, Box::new(BlockView { edges, ..view })));
+            }
             Event::Finished { block, exchange, .. } => return Some(News::Finished(block, exchange)),
         }
         None
@@ -184,8 +188,8 @@ mod tests {
         let (view, exchange) = run(&MsgCipGeneric::product_name("0,0"), false);
         assert!(view.q, "{view:?}");
         assert_eq!(usize::from(view.res_data[0]), view.res_data.len() - 1, "a SHORT_STRING");
-        assert_eq!(exchange.request, [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
-        assert_eq!(exchange.response.unwrap()[..4], [0x8E, 0, 0, 0]);
+        assert_eq!(exchange.request[..], [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
+        assert_eq!(exchange.response().unwrap()[..4], [0x8E, 0, 0, 0]);
     }
 
     #[test]

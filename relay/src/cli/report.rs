@@ -42,7 +42,7 @@ pub(super) struct Report<'a> {
 
 impl<'a> Report<'a> {
     pub(super) fn new(status: &'a BlockStatus, exchange: &Exchange) -> Self {
-        let (request, response) = (&exchange.request, exchange.response.as_deref());
+        let (request, response) = (&exchange.request, exchange.response());
         Self {
             status,
             response: response.map(write_hex),

@@ -141,6 +141,10 @@ impl Latest {
 }
 
 impl Observer for Hub {
+    fn watches(&self) -> bool {
+        true
+    }
+
     fn changed(&self, block: BlockId, view: &BlockView) {
         self.change(|latest| {
             if latest.rows.contains_key(&block) {

@@ -86,7 +86,8 @@ impl Row {
     ) {
         let at = self.status.at.clone().unwrap_or_else(wall_clock::now);
         if view.q {
-            self.status.last = Some(LastSuccess::of(&self.status, at.clone()));
+            let status = BlockStatus::new(self.block.id, view, Some(at.clone()), None);
+            self.status.last = Some(LastSuccess::of(&status, at.clone()));
         }
         if self.exchanges.len() == MAX_EXCHANGES {
             self.exchanges.pop_front();

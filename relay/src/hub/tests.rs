@@ -22,7 +22,7 @@ fn edges(hub: &Hub, block: BlockId, edges: &[(u64, u16)]) {
 fn succeed(hub: &Hub, block: BlockId, data: u8) {
     let view = BlockView { q: true, res_data: vec![data], ..BlockView::default() };
     hub.changed(block, &view);
-    hub.finished(block, &view, &Exchange { request: vec![data], ..Exchange::default() }, None);
+    hub.finished(block, &view, &Exchange { request: [data].into(), ..Exchange::default() }, None);
 }
 
 #[test]

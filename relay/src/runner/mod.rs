@@ -18,7 +18,8 @@ use std::time::Duration;
 use cipdeck_shared::api::BlockStatus;
 use cipdeck_shared::config::{BlockId, Target};
 use cipdeck_shared::engine::{
-    BlockView, CommandError, Engine, Event, Exchange, Instant, LinkId, Originator, TargetView, Wants,
+    BlockView, CommandError, Engine, Event, Exchange, Instant, LinkId, Originator, StatusBits, TargetView,
+    Wants,
 };
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use cipdeck_shared::sim::Device;
@@ -37,6 +38,8 @@ use crate::permit::{self, Denied, Grants};
 
 /// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
 pub(crate) trait Observer: Send + Sync + 'static {
+    /// Whether somebody wants to hear what lies between the beginning of a message and its end.
+    fn watches(&self) -> bool;
     /// A block looks different; `view.edges` are the new edges only.
     fn changed(&self, block: BlockId, view: &BlockView);
     /// A message has ended. `trace` says where it went, if it was permitted to go anywhere. Returns the status that
@@ -285,7 +288,7 @@ impl Inner {
                 }
             }
             Event::Wants(wants) => self.ask(&wants, state, now),
-            Event::Changed { block, view } => self.observer.changed(block, &view),
+            Event::Changed { block, edge } => self.tell(block, edge, state),
             Event::Target { target, view } => self.observer.target(&target, view.as_deref()),
             Event::Finished { block, shot, view, exchange } => {
                 let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
@@ -297,6 +300,12 @@ impl Inner {
                     let _ = run.send(Ended { view, exchange, status });
                 }
             }
+        }
+    }
+
+    fn tell(&self, block: BlockId, edge: Option<(u64, StatusBits)>, state: &State) {
+        if let Some(view) = self.observer.watches().then(|| state.engine.glance(block)).flatten() {
+            self.observer.changed(block, &BlockView { edges: edge.into_iter().collect(), ..view });
         }
     }
 

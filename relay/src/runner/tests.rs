@@ -9,6 +9,10 @@ const BLOCK: BlockId = BlockId(1);
 struct Nobody;
 
 impl Observer for Nobody {
+    fn watches(&self) -> bool {
+        false
+    }
+
     fn changed(&self, _: BlockId, _: &BlockView) {}
 
     fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
@@ -52,7 +56,7 @@ async fn a_run_is_answered_with_done_before_in_falls() {
     let ended = runner.run(BLOCK, None).await.unwrap();
     assert_eq!(ended.view.status.status_bits, StatusBits(StatusBits::EN | StatusBits::DN), "{ended:?}");
     assert!(ended.view.q && ended.view.input);
-    assert_eq!(ended.exchange.request, [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
+    assert_eq!(ended.exchange.request[..], [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
     assert!(ended.exchange.request_frame.is_some() && ended.exchange.response_frame.is_some());
     let view = runner.view(BLOCK).unwrap();
     assert_eq!((view.input, view.phase), (false, Phase::Done));

@@ -123,7 +123,7 @@ impl ExchangeView {
         Self {
             at,
             request: write_hex(&exchange.request),
-            response: hex(&exchange.response),
+            response: exchange.response().map(write_hex),
             request_frame: hex(&exchange.request_frame),
             response_frame: hex(&exchange.response_frame),
         }

@@ -94,18 +94,18 @@ impl Entry {
             self.edges_dropped = 0;
         }
         let bits = self.block.status().status_bits;
-        let mut edges = Vec::new();
+        let mut edge = None;
         if bits != before.0.status_bits || (triggered && effect.is_some()) {
-            let edge = (now.micros_since(self.block.triggered_at()), bits);
-            edges.push(edge);
+            let new = (now.micros_since(self.block.triggered_at()), bits);
+            edge = Some(new);
             if self.edges.len() < MAX_EDGES {
-                self.edges.push(edge);
+                self.edges.push(new);
             } else {
                 self.edges_dropped += 1;
             }
         }
         let changed = looks(&self.block) != before || effect.is_some();
-        Step { effect, changed: changed.then_some(edges) }
+        Step { effect, changed, edge }
     }
 
     /// How the block looks now, without edges.
@@ -127,6 +127,8 @@ impl Entry {
 /// What a step led to.
 pub(super) struct Step {
     pub(super) effect: Option<super::block::Effect>,
-    /// The new edges, when the block looks different.
-    pub(super) changed: Option<Vec<(u64, StatusBits)>>,
+    /// Whether the block looks different.
+    pub(super) changed: bool,
+    /// Its new edge, if its bits have changed.
+    pub(super) edge: Option<(u64, StatusBits)>,
 }

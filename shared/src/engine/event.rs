@@ -1,11 +1,14 @@
 //! What the engine says to its owner.
 
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::config::{BlockId, Target};
 
 use super::block::BlockView;
+use super::status::StatusBits;
 use super::target::TargetView;
 
 /// One TCP connection or the attempt at one. Never used again, so that nothing stale can be taken for new.
@@ -47,12 +50,12 @@ pub enum Event {
     },
     /// May this be sent? Answer with `permit`.
     Wants(Wants),
-    /// A block looks different.
+    /// A block looks different: [`Engine::glance`](super::Engine::glance) shows how.
     Changed {
         /// Which.
         block: BlockId,
-        /// How it looks now; its edges are the new ones only.
-        view: Box<BlockView>,
+        /// The new edge, if its bits have changed: µs since the trigger, and the bits from then on.
+        edge: Option<(u64, StatusBits)>,
     },
     /// A target looks different.
     Target {
@@ -78,11 +81,19 @@ pub enum Event {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exchange {
     /// Message router request, as planned.
-    pub request: Vec<u8>,
-    /// Message router reply, if one came.
-    pub response: Option<Vec<u8>>,
+    pub request: Arc<[u8]>,
     /// The frame that was written, if it was.
     pub request_frame: Option<Vec<u8>>,
     /// The frame that was read, if one was.
     pub response_frame: Option<Vec<u8>>,
+    /// Where the message router reply is in `response_frame`.
+    pub response_at: Range<usize>,
+}
+
+impl Exchange {
+    /// Message router reply, if one came.
+    pub fn response(&self) -> Option<&[u8]> {
+        let reply = self.response_frame.as_ref()?.get(self.response_at.clone())?;
+        (!reply.is_empty()).then_some(reply)
+    }
 }

@@ -7,6 +7,7 @@
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::wire::{
     Command, ConnectedMessage, ConnectionId, DecodeError, DecodeErrorKind, Deframer, Encapsulation,
@@ -23,8 +24,8 @@ pub(super) enum Received {
     Refused(EncapsulationStatus),
     /// Who the device is, if it can be read.
     Identity(Option<ListIdentityItem>),
-    /// The reply to the outstanding request: message router bytes, and the whole frame.
-    Reply { message: Vec<u8>, at: usize, frame: Vec<u8>, id: Option<ConnectionId> },
+    /// The reply to the outstanding request: the whole frame, and where its message router bytes are.
+    Reply { frame: Vec<u8>, message: Range<usize>, id: Option<ConnectionId> },
     /// The target answered the outstanding request with an encapsulation status.
     Status { status: EncapsulationStatus, frame: Vec<u8> },
     /// A frame that answers nothing.
@@ -280,7 +281,8 @@ impl Matching {
         let message = SendRrData::decode(frame.data()).and_then(|data| data.unconnected());
         Some(match message {
             Ok(item) => {
-                Received::Reply { message: item.data.to_vec(), at: item.at, frame: bytes(frame), id: None }
+                let message = item.at..item.at + item.data.len();
+                Received::Reply { frame: bytes(frame), message, id: None }
             }
             Err(error) => Received::Malformed { error, frame: bytes(frame) },
         })
@@ -298,9 +300,8 @@ impl Matching {
         match SendRrData::decode(frame.data()).and_then(|data| data.connected()) {
             Ok(item) if item.sequence != sequence || !ids.answered_by(item.id) => None,
             Ok(item) => Some(Received::Reply {
-                message: item.message.to_vec(),
-                at: item.at,
                 frame: bytes(frame),
+                message: item.at..item.at + item.message.len(),
                 id: Some(item.id),
             }),
             Err(error) => Some(Received::Malformed { error, frame: bytes(frame) }),

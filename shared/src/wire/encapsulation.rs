@@ -181,6 +181,7 @@ impl<'a> Encapsulation<'a> {
 
     /// Appends the frame.
     pub fn encode(&self, out: &mut Vec<u8>) {
+        out.reserve(HEADER_SIZE + self.data.len());
         self.header.encode(self.length, out);
         out.extend_from_slice(self.data);
     }

@@ -88,9 +88,9 @@ impl Owner {
                         self.engine.permit(&wants, self.allowed, self.now);
                     }
                 }
-                Event::Changed { block, view } => {
-                    self.bits.entry(block).or_default().extend(view.edges.iter().map(|edge| edge.1.0));
-                    self.told.insert(block, *view);
+                Event::Changed { block, edge } => {
+                    self.bits.entry(block).or_default().extend(edge.map(|(_, bits)| bits.0));
+                    self.told.extend(self.engine.glance(block).map(|view| (block, view)));
                 }
                 Event::Target { target, view } => {
                     self.targets.insert(target, view.map(|view| *view));

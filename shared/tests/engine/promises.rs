@@ -27,8 +27,8 @@ fn a_run_registers_sends_and_ends_with_done() {
     let (_, view, exchange) = &owner.finished[0];
     assert_eq!((view.q, view.input, view.status.status_bits.0, view.runs), (true, true, 17, 1));
     assert_eq!((&view.res_data[..], view.reply_us), (&b"\x04CHP1"[..], Some(390)));
-    assert_eq!(exchange.request, [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
-    assert_eq!(exchange.response.as_deref(), Some(&b"\x8E\0\0\0\x04CHP1"[..]));
+    assert_eq!(exchange.request[..], [0x0E, 3, 0x20, 1, 0x24, 1, 0x30, 7]);
+    assert_eq!(exchange.response(), Some(&b"\x8E\0\0\0\x04CHP1"[..]));
     assert!(exchange.request_frame.is_some() && exchange.response_frame.is_some());
     assert!(!owner.view(A).input && owner.view(A).q);
 }

@@ -9,6 +9,7 @@ use alloc::collections::VecDeque;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::config::{BlockId, Profile};
 use crate::plan::MessagePlan;
@@ -47,9 +48,9 @@ pub(super) enum Output {
     Transmit(LinkId),
     Wants(Wants),
     Block(BlockId, Input),
-    /// Frames for the block's exchange: written, read, and the reply's message router bytes.
+    /// Frames for the block's exchange: written, read, and where the message router reply is in it.
     Wrote(BlockId, Vec<u8>),
-    Read(BlockId, Vec<u8>, Option<Vec<u8>>),
+    Read(BlockId, Vec<u8>, Range<usize>),
 }
 
 /// What every call needs.

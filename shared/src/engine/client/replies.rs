@@ -1,6 +1,7 @@
 //! What comes in: a session, a reply, a refusal, or nonsense.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::config::Profile;
 use crate::engine::block::Input;
@@ -17,12 +18,21 @@ use crate::config::BlockId;
 
 use super::{Client, Context, Job, Link, Output, Outstanding, What};
 
-/// The bytes of a reply.
+/// A frame, and where the message router reply is in it.
 struct Reply {
-    message: Vec<u8>,
-    /// Where they are in the frame.
-    at: usize,
     frame: Vec<u8>,
+    message: Range<usize>,
+}
+
+impl Reply {
+    fn decode(&self) -> Result<MessageRouterReply<'_>, DecodeError> {
+        let message = self.frame.get(self.message.clone()).unwrap_or_default();
+        MessageRouterReply::decode(message).map_err(|error| error.shifted(self.message.start))
+    }
+
+    const fn at(&self) -> usize {
+        self.message.start
+    }
 }
 
 impl Client {
@@ -49,9 +59,9 @@ impl Client {
                     item.map(|item| Profile::of_identity(item.vendor, item.device_type, item.name.bytes()));
                 self.identified(profile, cx);
             }
-            Received::Reply { message, at, frame, id } => {
+            Received::Reply { frame, message, id } => {
                 self.answers();
-                self.replied(Reply { message, at, frame }, id, cx);
+                self.replied(Reply { frame, message }, id, cx);
             }
             Received::Status { status, frame } => {
                 self.answers();
@@ -83,9 +93,9 @@ impl Client {
     fn malformed(&mut self, error: DecodeError, frame: Vec<u8>, cx: &mut Context<'_>) {
         self.disconnect(cx);
         match self.outstanding.take().map(|outstanding| outstanding.what) {
-            Some(What::Message(job, _)) => fail(job.block, Failure::Malformed(error), frame, None, cx),
+            Some(What::Message(job, _)) => fail(job.block, Failure::Malformed(error), frame, NO_REPLY, cx),
             Some(What::Open(block, _)) => {
-                cx.out.push_back(Output::Read(block, frame, None));
+                cx.out.push_back(Output::Read(block, frame, NO_REPLY));
                 self.fail_first(block, Failure::Malformed(error), cx);
             }
             Some(What::Close | What::Identify | What::KeepAlive(_)) => {}
@@ -124,7 +134,7 @@ impl Client {
     fn message_replied(&mut self, job: &Job, connection: Option<u16>, reply: Reply, cx: &mut Context<'_>) {
         let asked = job.plan.request().service();
         let routed = connection.is_none() && !job.plan.routed(self.profile_for(&job.plan)).route().is_empty();
-        let input = match MessageRouterReply::decode(&reply.message) {
+        let input = match reply.decode() {
             Ok(answer) if answer.service == asked && answer.status == GeneralStatus::Success => {
                 Ok(Input::Succeeded { data: answer.data.to_vec(), size: job.plan.res_data_size() })
             }
@@ -135,19 +145,19 @@ impl Client {
             Ok(answer) if routed && is_of_the_router(&answer) => {
                 Ok(Input::Failed(refused_on_the_way(RefusedBy::Router, &answer)))
             }
-            Ok(answer) => Err(wrong_service(&answer, reply.at)),
-            Err(error) => Err(error.shifted(reply.at)),
+            Ok(answer) => Err(wrong_service(&answer, reply.at())),
+            Err(error) => Err(error),
         };
         match input {
             Ok(input) => {
                 self.complete(job, connection, cx);
-                cx.out.push_back(Output::Read(job.block, reply.frame, Some(reply.message)));
+                cx.out.push_back(Output::Read(job.block, reply.frame, reply.message));
                 cx.out.push_back(Output::Block(job.block, input));
             }
             Err(error) => {
                 self.disconnect(cx);
                 self.error = Some(Failure::Malformed(error).cause(Phase::Connecting));
-                fail(job.block, Failure::Malformed(error), reply.frame, Some(reply.message), cx);
+                fail(job.block, Failure::Malformed(error), reply.frame, reply.message, cx);
             }
         }
     }
@@ -172,10 +182,10 @@ impl Client {
     }
 
     fn open_replied(&mut self, block: BlockId, opening: Opening, reply: Reply, cx: &mut Context<'_>) {
-        let answer = match MessageRouterReply::decode(&reply.message) {
+        let answer = match reply.decode() {
             Ok(answer) if answer.service == opening.service() => answer,
-            Ok(answer) => return self.malformed_open(block, wrong_service(&answer, reply.at), &reply, cx),
-            Err(error) => return self.malformed_open(block, error.shifted(reply.at), &reply, cx),
+            Ok(answer) => return self.malformed_open(block, wrong_service(&answer, reply.at()), &reply, cx),
+            Err(error) => return self.malformed_open(block, error, &reply, cx),
         };
         match opening.answered(&answer, cx.originator, cx.now) {
             Opened::Yes(connection) => {
@@ -186,12 +196,11 @@ impl Client {
             Opened::Again(opening) => self.open(opening, cx),
             Opened::No if answer.status == GeneralStatus::Success => {
                 let kind = DecodeErrorKind::Unexpected { field: "connection in the reply", found: 0 };
-                self.malformed_open(block, DecodeError { at: reply.at, kind }, &reply, cx);
+                self.malformed_open(block, DecodeError { at: reply.at(), kind }, &reply, cx);
             }
             Opened::No => {
                 let failure = refused_on_the_way(RefusedBy::ForwardOpen, &answer);
-                let message = reply.message.clone();
-                cx.out.push_back(Output::Read(block, reply.frame, Some(message)));
+                cx.out.push_back(Output::Read(block, reply.frame, reply.message));
                 self.fail_first(block, failure, cx);
             }
         }
@@ -200,7 +209,7 @@ impl Client {
     fn malformed_open(&mut self, block: BlockId, error: DecodeError, reply: &Reply, cx: &mut Context<'_>) {
         self.disconnect(cx);
         self.error = Some(Failure::Malformed(error).cause(Phase::Connecting));
-        cx.out.push_back(Output::Read(block, reply.frame.clone(), Some(reply.message.clone())));
+        cx.out.push_back(Output::Read(block, reply.frame.clone(), reply.message.clone()));
         self.fail_first(block, Failure::Malformed(error), cx);
     }
 
@@ -213,13 +222,15 @@ impl Client {
                 self.queue.push_front(job);
                 self.disconnect(cx);
             }
-            What::Message(job, _) => fail(job.block, Failure::EncapsulationStatus(status), frame, None, cx),
+            What::Message(job, _) => {
+                fail(job.block, Failure::EncapsulationStatus(status), frame, NO_REPLY, cx);
+            }
             What::Open(block, _) => {
                 if let Some(job) = self.queue.front_mut().filter(|job| unknown_session && !job.resent) {
                     job.resent = true;
                     return self.disconnect(cx);
                 }
-                cx.out.push_back(Output::Read(block, frame, None));
+                cx.out.push_back(Output::Read(block, frame, NO_REPLY));
                 self.fail_first(block, Failure::EncapsulationStatus(status), cx);
             }
             What::KeepAlive(_) if unknown_session => self.disconnect(cx),
@@ -247,7 +258,10 @@ fn wrong_service(answer: &MessageRouterReply<'_>, at: usize) -> DecodeError {
     DecodeError { at, kind: DecodeErrorKind::Unexpected { field: "service of the reply", found } }
 }
 
-fn fail(block: BlockId, failure: Failure, frame: Vec<u8>, message: Option<Vec<u8>>, cx: &mut Context<'_>) {
+/// The frame has no message router reply that could be shown.
+const NO_REPLY: Range<usize> = 0..0;
+
+fn fail(block: BlockId, failure: Failure, frame: Vec<u8>, message: Range<usize>, cx: &mut Context<'_>) {
     cx.out.push_back(Output::Read(block, frame, message));
     cx.out.push_back(Output::Block(block, Input::Failed(failure)));
 }

@@ -5,7 +5,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::config::{BlockId, Channel};
-use crate::engine::block::{BlockView, Effect, Input};
+use crate::engine::block::{Effect, Input};
 use crate::engine::channel::Buffers;
 use crate::engine::client::Job;
 use crate::engine::entry::{Active, Entry};
@@ -51,11 +51,8 @@ impl Engine {
     pub(super) fn step(&mut self, block: BlockId, input: Input, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         let step = entry.step(input, now);
-        if let Some(edges) = step.changed {
-            let view = entry.glance();
-            let position = self.blocks.get(&block).map_or(0, |entry| self.position(block, entry));
-            let view = Box::new(BlockView { position, edges, ..view });
-            self.events.push_back(Event::Changed { block, view });
+        if step.changed {
+            self.events.push_back(Event::Changed { block, edge: step.edge });
         }
         match step.effect {
             Some(Effect::Enqueue) => self.enqueue(block, now),
@@ -83,7 +80,7 @@ impl Engine {
             revision: entry.revision,
             plan,
             granted: false,
-            exchange: Exchange { request: entry.request.to_vec(), ..Exchange::default() },
+            exchange: Exchange { request: Arc::clone(&entry.request), ..Exchange::default() },
         });
         self.buffers(channel).enqueue(block);
         self.grant(channel, now);
@@ -169,11 +166,9 @@ impl Engine {
         }
     }
 
+    /// Its place has changed.
     fn announce_position(&mut self, block: BlockId) {
-        if let Some(entry) = self.blocks.get(&block) {
-            let view = Box::new(BlockView { position: self.position(block, entry), ..entry.glance() });
-            self.events.push_back(Event::Changed { block, view });
-        }
+        self.events.push_back(Event::Changed { block, edge: None });
     }
 
     pub(super) fn position(&self, block: BlockId, entry: &Entry) -> usize {

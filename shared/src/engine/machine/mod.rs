@@ -12,7 +12,7 @@ use crate::plan::{Finding, MessagePlan};
 
 use crate::engine::block::{BlockView, Input};
 use crate::engine::channel::Buffers;
-use crate::engine::client::Client;
+use crate::engine::client::{Client, Output};
 use crate::engine::connection::Originator;
 use crate::engine::entry::{Entry, Invalid};
 use crate::engine::event::{Event, LinkId, Wants};
@@ -33,6 +33,8 @@ pub struct Engine {
     housekeeping: BTreeSet<(Instant, Target)>,
     originator: Originator,
     events: VecDeque<Event>,
+    /// What a client wants done: kept so that its memory is used again.
+    outputs: VecDeque<Output>,
     next_link: u64,
     next_shot: u64,
 }
@@ -72,6 +74,7 @@ impl Engine {
             housekeeping: BTreeSet::new(),
             originator,
             events: VecDeque::new(),
+            outputs: VecDeque::new(),
             next_link: 0,
             next_shot: 0,
         }
@@ -235,6 +238,12 @@ impl Engine {
     /// What is to be done or told, in order.
     pub fn poll_event(&mut self) -> Option<Event> {
         self.events.pop_front()
+    }
+
+    /// How a block looks, without edges: for [`Event::Changed`].
+    pub fn glance(&self, block: BlockId) -> Option<BlockView> {
+        let entry = self.blocks.get(&block)?;
+        Some(BlockView { position: self.position(block, entry), ..entry.glance() })
     }
 
     /// How a block looks, with all edges of its last message.

@@ -1,7 +1,6 @@
 //! Calls into clients, what they want done, and who may have a session.
 
 use alloc::boxed::Box;
-use alloc::collections::VecDeque;
 
 use crate::config::{BlockId, Target};
 use crate::engine::channel::{CONTROLLER_CONNECTIONS, CONTROLLER_SESSIONS};
@@ -88,8 +87,9 @@ impl Engine {
         now: Instant,
         call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
     ) -> Option<T> {
-        let mut out = VecDeque::new();
         let client = self.clients.get_mut(target)?;
+        // Calls are nested: an inner one finds this empty and has its own.
+        let mut out = core::mem::take(&mut self.outputs);
         let (next_link, originator) = (&mut self.next_link, &mut self.originator);
         let result = call(client, &mut Context { now, next_link, originator, out: &mut out });
         let due = client.poll_timeout().filter(|at| client.armed.is_none_or(|armed| *at < armed));
@@ -102,9 +102,10 @@ impl Engine {
             let view = Some(Box::new(client.view()));
             self.events.push_back(Event::Target { target: target.clone(), view });
         }
-        for output in out {
+        while let Some(output) = out.pop_front() {
             self.output(target, output, now);
         }
+        self.outputs = out;
         Some(result)
     }
 
@@ -129,7 +130,7 @@ impl Engine {
             Output::Read(block, frame, response) => {
                 if let Some(exchange) = self.exchange(block) {
                     exchange.response_frame = Some(frame);
-                    exchange.response = response;
+                    exchange.response_at = response;
                 }
             }
         }
