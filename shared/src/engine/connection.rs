@@ -29,6 +29,15 @@ const RPI_US: u32 = 2_000_000;
 /// we have lost.
 const MULTIPLIER: TimeoutMultiplier = TimeoutMultiplier(1);
 
+/// How long a target keeps a connection without a request.
+const WATCHDOG: Millis = Millis(MULTIPLIER.watchdog_us(RPI_US) / 1_000);
+
+/// A request may need so long to its target that a connection which is silent for longer is not written to.
+const MAX_SILENCE: Millis = Millis(WATCHDOG.0 - 2_000);
+
+/// A connection that is kept alive is read over at least this often, so that one read may come late.
+pub(super) const MAX_KEEP_ALIVE: Millis = Millis(WATCHDOG.0 / 2);
+
 /// How often Forward_Open is tried with other parameters.
 const ATTEMPTS: u8 = 4;
 
@@ -80,7 +89,7 @@ pub(super) struct Opening {
     triad: ConnectionTriad,
     t_o: ConnectionId,
     size: u16,
-    /// Less than this is of no use to the message.
+    /// The request does not fit into less than this.
     needed: u16,
     /// How long the connection stays open without being used.
     idle: Millis,
@@ -187,6 +196,8 @@ pub(super) struct Connection {
     pub(super) size: u16,
     sequence: u16,
     pub(super) last_used: Instant,
+    /// When the last request went out: the target's watchdog runs from its arrival, not from the reply.
+    pub(super) last_sent: Instant,
     /// How long it stays open without being used.
     pub(super) idle: Millis,
     /// Closed as soon as no message wants it.
@@ -203,14 +214,16 @@ impl Connection {
             size: opening.size,
             sequence: 0,
             last_used: now,
+            last_sent: now,
             idle: opening.idle,
             close_wanted: false,
             requests: 0,
         }
     }
 
-    /// Never 0: that is what a target remembers before the first request.
-    pub(super) const fn next_sequence(&mut self) -> u16 {
+    /// For a request that is sent now. Never 0: that is what a target remembers before the first request.
+    pub(super) const fn next_sequence(&mut self, now: Instant) -> u16 {
+        self.last_sent = now;
         self.sequence = self.sequence.wrapping_add(1);
         if self.sequence == 0 {
             self.sequence = 1;
@@ -223,17 +236,21 @@ impl Connection {
         Ok(close.request()?.bytes())
     }
 
-    /// Whether this message fits, and its longest reply.
+    /// The target may have given it up.
+    pub(super) fn is_stale(&self, now: Instant) -> bool {
+        self.last_sent + MAX_SILENCE <= now
+    }
+
+    /// Whether this message fits. A reply that does not is refused by the target, with 0x11.
     pub(super) fn fits(&self, plan: &MessagePlan) -> bool {
         self.size >= needed_size(plan)
     }
 }
 
-/// Sequence count and request, or sequence count and a reply that fills `ResData`.
+/// Sequence count and request. The longest reply, 2 + 4 + 490 bytes, fits into the usual size; `ResData` is mostly far
+/// larger than what comes, so that a target with smaller connections need not be given up.
 fn needed_size(plan: &MessagePlan) -> u16 {
-    const REPLY_HEADER: usize = 4;
-    let longest = plan.request().length().max(REPLY_HEADER + usize::from(plan.res_data_size()));
-    u16::try_from(2 + longest).unwrap_or(u16::MAX)
+    u16::try_from(2 + plan.request().length()).unwrap_or(u16::MAX)
 }
 
 /// Explicit messages end at the Message Router.

@@ -6,6 +6,7 @@ use crate::wire::{
 };
 
 use crate::engine::block::Input;
+use crate::engine::connection::MAX_KEEP_ALIVE;
 use crate::engine::session::Expected;
 use crate::engine::status::{Cause, CauseKind};
 use crate::engine::time::{Instant, Millis};
@@ -75,21 +76,32 @@ impl Client {
             return self.give_up(&outstanding.what, cx);
         }
         if self.keep_alive.is_some() {
-            return self.keep_alive(cx);
+            for connection in &mut self.connections {
+                // The session was too busy for keeping it alive.
+                connection.close_wanted |= connection.is_stale(cx.now);
+            }
+            return match self.unwanted_connection() {
+                Some(_) => self.advance(cx),
+                None => self.keep_alive(cx),
+            };
         }
         for connection in &mut self.connections {
             connection.close_wanted |= connection.last_used + connection.idle <= cx.now;
         }
         let longest = self.connections.iter().map(|connection| connection.idle).max().unwrap_or_default();
         // 2080-RM001D p. 182: with its last connection the session is closed.
-        self.ending |= self.last_used + longest <= cx.now;
+        self.ending |= self.last_message + longest <= cx.now;
         self.advance(cx);
     }
 
     /// An idle connection is closed after its time; with a keep-alive nothing is closed.
     fn next_idle(&self) -> Option<Instant> {
         match self.keep_alive {
-            Some(period) => Some(self.last_used + period),
+            Some(period) if self.connections.is_empty() => Some(self.last_used + period),
+            Some(period) => {
+                let silence = period.min(MAX_KEEP_ALIVE);
+                self.connections.iter().map(|connection| connection.last_sent + silence).min()
+            }
             None => self.connections.iter().map(|connection| connection.last_used + connection.idle).min(),
         }
     }
@@ -112,6 +124,27 @@ impl Client {
         self.connections
             .iter()
             .position(|connection| connection.close_wanted && !self.is_wanted(&connection.route))
+    }
+
+    /// The connection that has been of no use for longest: since when, and its serial number.
+    pub(in crate::engine) fn spare_connection(&self) -> Option<(Instant, u16)> {
+        let used = self.outstanding.as_ref().and_then(|outstanding| match &outstanding.what {
+            What::Message(_, serial) => *serial,
+            _ => None,
+        });
+        let spare = self.connections.iter().filter(|open| {
+            !open.close_wanted && Some(open.triad.serial) != used && !self.is_wanted(&open.route)
+        });
+        spare.map(|open| (open.last_used, open.triad.serial)).min()
+    }
+
+    /// Closes a spare connection, because another one needs its place.
+    pub(in crate::engine) fn give_up_connection(&mut self, serial: u16, cx: &mut Context<'_>) {
+        for connection in &mut self.connections {
+            connection.close_wanted |= connection.triad.serial == serial;
+        }
+        self.ending |= self.is_idle() && self.connections.iter().all(|connection| connection.close_wanted);
+        self.advance(cx);
     }
 
     /// Whether a message in the queue is for this route's connection.
@@ -184,12 +217,12 @@ impl Client {
         let Ok(request) = request.map(|request| request.bytes()) else { return };
         let deadline = Some(cx.now + KEEP_ALIVE_TIME);
         let context = self.fresh_context();
-        let connection = self.connections.iter_mut().min_by_key(|connection| connection.last_used);
+        let connection = self.connections.iter_mut().min_by_key(|connection| connection.last_sent);
         let (Some(connection), Link::Ready(id, session)) = (connection, &self.link) else {
             return self.send_own(What::KeepAlive(None), &request, 1, deadline, cx);
         };
         if let Ok(message) = ConnectedMessage::new(&request) {
-            let sequence = connection.next_sequence();
+            let sequence = connection.next_sequence(cx.now);
             let address = (connection.ids.o_t, sequence);
             session.send_connected(message, context, address, &mut self.transmit);
             let what = What::KeepAlive(Some(connection.triad.serial));

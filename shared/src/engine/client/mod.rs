@@ -77,6 +77,8 @@ pub(super) struct Client {
     failures: u32,
     retry_at: Option<Instant>,
     last_used: Instant,
+    /// When a message last came from a block or was answered.
+    last_message: Instant,
     /// Whether the controller's limits count this session.
     pub(super) controller: bool,
     /// The session is closed as soon as nothing is left to do.
@@ -152,7 +154,7 @@ impl What {
 
 impl Client {
     pub(super) fn submit(&mut self, job: Job, cx: &mut Context<'_>) {
-        self.last_used = cx.now;
+        (self.last_used, self.last_message) = (cx.now, cx.now);
         self.ending = false;
         self.keep_alive = Some(Millis::from(job.plan.keep_alive_ms())).filter(|span| span.0 != 0);
         cx.out.push_back(Output::Block(job.block, Input::BufferGranted));
@@ -255,13 +257,16 @@ impl Client {
         let context = self.fresh_context();
         let profile = self.profile_for(&job.plan);
         let routed = job.plan.routed(profile);
+        let connected = job.plan.connection().is_some();
+        let connection = self.connections.iter_mut().find(|open| connected && open.route == *routed.route());
+        if connected && connection.is_none() {
+            // Never unconnected instead.
+            self.queue.push_front(job);
+            return self.advance(cx);
+        }
         let Link::Ready(id, session) = &self.link else { return };
-        let connection = job
-            .plan
-            .connection()
-            .and_then(|_| self.connections.iter_mut().find(|connection| connection.route == *routed.route()));
         let (expected, serial) = if let Some(connection) = connection {
-            let sequence = connection.next_sequence();
+            let sequence = connection.next_sequence(cx.now);
             if let Ok(message) = ConnectedMessage::new(job.plan.bytes()) {
                 let address = (connection.ids.o_t, sequence);
                 session.send_connected(message, context, address, &mut self.transmit);
@@ -328,6 +333,11 @@ impl Client {
     /// Whether a session is there or being made.
     pub(super) const fn holds_session(&self) -> bool {
         matches!(self.link, Link::Connecting(_) | Link::Registering(..) | Link::Ready(..))
+    }
+
+    /// Whether this is one of the sessions that the controller's limit counts.
+    pub(super) const fn counts_for_controller(&self) -> bool {
+        self.controller && self.holds_session() && !self.ending
     }
 
     /// Whether no message is on its way.

@@ -57,7 +57,12 @@ impl Client {
             let profile = self.profile_for(&plan);
             let route = plan.routed(profile).route();
             match self.connections.iter().position(|connection| connection.route == *route) {
-                Some(index) if self.connections.get(index).is_some_and(|open| !open.fits(&plan)) => {
+                Some(index)
+                    if self
+                        .connections
+                        .get(index)
+                        .is_some_and(|open| !open.fits(&plan) || open.is_stale(cx.now)) =>
+                {
                     return self.close_connection(index, cx);
                 }
                 Some(_) => {}

@@ -134,6 +134,7 @@ impl Client {
     fn message_replied(&mut self, job: &Job, connection: Option<u16>, reply: Reply, cx: &mut Context<'_>) {
         let asked = job.plan.request().service();
         let routed = connection.is_none() && !job.plan.routed(self.profile_for(&job.plan)).route().is_empty();
+        self.last_message = cx.now;
         let input = match reply.decode() {
             Ok(answer) if answer.service == asked && answer.status == GeneralStatus::Success => {
                 Ok(Input::Succeeded { data: answer.data.to_vec(), size: job.plan.res_data_size() })
@@ -222,7 +223,8 @@ impl Client {
                 self.queue.push_front(job);
                 self.disconnect(cx);
             }
-            What::Message(job, _) => {
+            What::Message(job, connection) => {
+                self.complete(&job, connection, cx);
                 fail(job.block, Failure::EncapsulationStatus(status), frame, NO_REPLY, cx);
             }
             What::Open(block, _) => {

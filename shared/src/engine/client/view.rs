@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use crate::engine::connection::Connection;
 use crate::engine::session::Session;
 use crate::engine::target::{ConnectionView, TargetState, TargetView};
 
@@ -54,12 +55,15 @@ impl Client {
             .collect();
         missing.sort_by_key(|route| route.bytes());
         missing.dedup();
-        self.connections.len() + missing.len() + usize::from(opening)
+        let closing = |open: &&Connection| open.close_wanted && !self.is_wanted(&open.route);
+        let ending = self.connections.iter().filter(closing).count();
+        self.connections.len() - ending + missing.len() + usize::from(opening)
     }
 
     /// Whether a message along this route finds its connection open.
     pub(in crate::engine) fn has_connection_for(&self, plan: &crate::plan::MessagePlan) -> bool {
         let route = plan.routed(self.profile_for(plan)).route();
-        self.connections.iter().any(|connection| connection.route == *route) || self.is_wanted(route)
+        let stays = |open: &Connection| !open.close_wanted && open.route == *route;
+        self.connections.iter().any(stays) || self.is_wanted(route)
     }
 }

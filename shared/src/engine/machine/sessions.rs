@@ -14,14 +14,15 @@ use super::Engine;
 impl Engine {
     /// Whether the controller may have a session with this target; an idle one is given up if need be.
     pub(super) fn session_for_controller(&mut self, target: &Target, now: Instant) -> bool {
-        let counts = |client: &Client| client.controller && client.holds_session();
-        if self.clients.get(target).is_some_and(counts) {
+        if self.clients.get(target).is_some_and(Client::counts_for_controller) {
             return true;
         }
-        if self.clients.values().filter(|client| counts(client)).count() < CONTROLLER_SESSIONS {
+        if self.clients.values().filter(|client| client.counts_for_controller()).count() < CONTROLLER_SESSIONS
+        {
             return true;
         }
-        let idle = self.clients.iter().filter(|(_, client)| counts(client) && client.is_idle());
+        let idle =
+            self.clients.iter().filter(|(_, client)| client.counts_for_controller() && client.is_idle());
         let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
         oldest.is_some_and(|target| {
             self.client(&target, now, Client::close);
@@ -34,20 +35,18 @@ impl Engine {
         if plan.connection().is_none() {
             return true;
         }
-        let counts = |client: &Client| client.controller && client.holds_session();
         if self.clients.get(plan.target()).is_some_and(|client| client.has_connection_for(plan)) {
             return true;
         }
-        let in_use = self.clients.values().filter(|client| counts(client)).map(Client::connections_in_use);
-        if in_use.sum::<usize>() < CONTROLLER_CONNECTIONS {
+        let counted = || self.clients.iter().filter(|(_, client)| client.counts_for_controller());
+        if counted().map(|(_, client)| client.connections_in_use()).sum::<usize>() < CONTROLLER_CONNECTIONS {
             return true;
         }
-        let idle = self.clients.iter().filter(|(target, client)| {
-            counts(client) && client.is_idle() && client.connections_in_use() > 0 && *target != plan.target()
+        let spare = counted().filter_map(|(target, client)| {
+            client.spare_connection().map(|(since, serial)| (since, target.clone(), serial))
         });
-        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
-        oldest.is_some_and(|target| {
-            self.client(&target, now, Client::close);
+        spare.min().is_some_and(|(_, target, serial)| {
+            self.client(&target, now, |client, cx| client.give_up_connection(serial, cx));
             true
         })
     }
