@@ -395,7 +395,7 @@ fn a_target_that_does_not_know_the_session_gets_a_new_one_and_a_new_connection()
     let link = owner.register_and_open();
     owner.succeed(link, &[2]);
     assert_eq!(owner.view(A).res_data, [2]);
-    assert_eq!(owner.trace_since(3), ["connected", "register", "open", "connected"]);
+    assert_eq!(owner.trace_since(3), ["connected", "register", "close", "open", "connected"]);
 }
 
 /// A target gives up a connection that was silent for its watchdog time, whatever else goes over the session.

@@ -168,7 +168,11 @@ impl Owner {
     }
 
     /// Accepts the Forward_Open that was written last; the id that requests carry is the number of the Forward_Open.
+    /// Connections of an earlier socket, which are closed first, are not known any more.
     pub(crate) fn accept_open(&mut self, link: LinkId) {
+        while self.trace().last() == Some(&"close") {
+            self.refuse(link, 1, &[0x0107], &[]);
+        }
         let opens = self.trace().iter().filter(|word| word.ends_with("open")).count();
         let open = self.last(link).open();
         let reply = ForwardOpenReply {
