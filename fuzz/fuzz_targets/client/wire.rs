@@ -95,8 +95,14 @@ impl Wire {
         }
         if let Some(before) = &line.request {
             assert!(before.answered, "two requests at once: {before:x?} and {frame:x?}");
+            // Connections count each for themselves.
+            let connection =
+                |frame: &[u8]| frame.get(36..40).filter(|_| command == CONNECTED).map(<[u8]>::to_vec);
             assert!(
-                command == REGISTER || before.command() != command || before.number() != number(frame),
+                command == REGISTER
+                    || before.command() != command
+                    || connection(&before.frame) != connection(frame)
+                    || before.number() != number(frame),
                 "the same number again: {frame:x?}"
             );
         }
@@ -231,10 +237,11 @@ fn answer(message: &[u8]) -> Vec<u8> {
     let service = message.first().copied().unwrap_or(0);
     let mut answer = vec![service | 0x80, 0, 0, 0];
     match service {
-        // O->T id, then T->O id, triad and intervals as asked.
+        // O->T id, one for each connection, then T->O id, triad and intervals as asked.
         0x54 | 0x5B => {
-            answer.extend_from_slice(&[9, 0, 0, 0]);
-            answer.extend_from_slice(message.get(12..16).unwrap_or(&[0; 4]));
+            let id = message.get(12..16).unwrap_or(&[0; 4]);
+            answer.extend(id.iter().map(|byte| byte ^ 0x55));
+            answer.extend_from_slice(id);
             answer.extend_from_slice(message.get(16..24).unwrap_or(&[0; 8]));
             answer.extend_from_slice(&[0x80, 0x84, 0x1E, 0, 0x80, 0x84, 0x1E, 0, 0, 0]);
         }

@@ -25,17 +25,14 @@ const PERIOD_US: u64 = PERIOD as u64 * 1_000;
 struct Beats {
     /// `runs` when it was seen last.
     runs: u64,
-    /// Begin of the first message that was seen, µs of the day.
-    origin: Option<u64>,
+    /// When the messages began, µs of the day.
+    begins: Vec<u64>,
 }
 
 /// What is known of all.
 #[derive(Debug, Default)]
 struct Seen {
     blocks: HashMap<String, Beats>,
-    /// From the grid to the begin, µs.
-    late: Vec<u64>,
-    messages: u64,
     errors: u64,
 }
 
@@ -68,7 +65,7 @@ pub(crate) fn table(quick: bool) -> String {
         let seen = watch(&mut viewer, time).await;
         (seen, since.elapsed(), relay.time().saturating_sub(before))
     });
-    text(seen, elapsed, used)
+    text(&seen, elapsed, used)
 }
 
 async fn watch(viewer: &mut Viewer, time: Duration) -> Seen {
@@ -95,22 +92,35 @@ impl Seen {
         if runs == beats.runs || !ended {
             return;
         }
-        let first = std::mem::replace(&mut beats.runs, runs) == 0;
-        let Some(begin) = begin(status) else { return };
-        let origin = *beats.origin.get_or_insert(begin);
-        if first {
-            return;
-        }
-        self.messages += 1;
+        beats.runs = runs;
+        beats.begins.extend(begin(status));
         self.errors += u64::from(status["Status"]["Error"] == true);
-        // Seen to the left of its place on the grid: the first one that was seen was late by more.
-        let place = (begin + PERIOD_US - origin % PERIOD_US) % PERIOD_US;
-        if place > PERIOD_US / 2 {
-            beats.origin = Some(begin);
-            self.late.push(0);
-        } else {
-            self.late.push(place);
-        }
+    }
+
+    /// From the grid to the begin of all messages, µs, sorted.
+    fn late(&self) -> Vec<u64> {
+        let mut late: Vec<u64> = self.blocks.values().flat_map(Beats::late).collect();
+        late.sort_unstable();
+        late
+    }
+}
+
+impl Beats {
+    /// Nobody here knows when the relay took the command that started the grid. Most messages begin in time: so the
+    /// grid goes through the earliest begins around the middle of all.
+    fn late(&self) -> Vec<u64> {
+        let place = |begin: u64, origin: u64| (begin + PERIOD_US - origin % PERIOD_US) % PERIOD_US;
+        let Some(first) = self.begins.first() else { return Vec::new() };
+        // Half a period before the middle, so that early and late lie in one row.
+        let mut places: Vec<u64> =
+            self.begins.iter().map(|begin| place(*begin, *first + PERIOD_US / 2)).collect();
+        places.sort_unstable();
+        let middle = places.get(places.len() / 2).copied().unwrap_or_default();
+        let origin = first + middle;
+        let mut places: Vec<u64> = self.begins.iter().map(|begin| place(*begin, origin)).collect();
+        places.sort_unstable();
+        let earliest = places.get(places.len() / 50).copied().unwrap_or_default();
+        places.into_iter().map(|place| place.saturating_sub(earliest)).collect()
     }
 }
 
@@ -123,19 +133,19 @@ fn begin(status: &Value) -> Option<u64> {
     end.checked_sub(status["elapsed_us"].as_u64()?)
 }
 
-fn text(mut seen: Seen, elapsed: Duration, used: Duration) -> String {
-    seen.late.sort_unstable();
-    let late = |percent| percentile(&seen.late, percent) / 1_000.0;
+fn text(seen: &Seen, elapsed: Duration, used: Duration) -> String {
+    let sorted = seen.late();
+    let late = |percent| percentile(&sorted, percent) / 1_000.0;
     format!(
         "### {BLOCKS} cyclic blocks every {PERIOD} ms, {TARGETS} simulated targets, channel `monitor`\n\n\
          | | |\n| --- | ---: |\n\
-         | messages seen in {:.1} s | {} of {} |\n\
+         | messages seen in {:.1} s | {} of {:.0} |\n\
          | errors | {} |\n\
          | lateness of the begin p50 | {:.2} ms |\n\
          | lateness of the begin p99 | {:.2} ms |\n\
          | processor time of the relay | {:.0} % of one processor |\n",
         elapsed.as_secs_f64(),
-        seen.messages,
+        sorted.len(),
         number(BLOCKS) * elapsed.as_secs_f64() * 1_000.0 / f64::from(PERIOD),
         seen.errors,
         late(50),

@@ -1,15 +1,14 @@
 //! The way through the relay: WebSocket `run` to its answer, beside the bare client.
 
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use cipdeck_tests::block;
 use cipdeck_tests::relay::Relay;
 use cipdeck_tests::rest::Rest;
-use cipdeck_tests::viewer::Viewer;
-use serde_json::json;
+use tokio_tungstenite::tungstenite::{Message, WebSocket, client};
 
 use crate::compare::send;
 use crate::load::{Load, median, percentile};
@@ -75,16 +74,18 @@ pub(crate) fn table(quick: bool) -> String {
     let target = *targets.addresses.first().expect("one target");
     let relay = RelayProcess::start(0);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    let (mut viewer, id) = runtime.block_on(async {
-        let created = Rest::new(relay.address).create(&block::get(&format!("4,{target}"), 1, 1, 1)).await;
-        (Viewer::connect(relay.address).await, created)
-    });
+    let block = block::get(&format!("4,{target}"), 1, 1, 1);
+    let id = runtime.block_on(Rest::new(relay.address).create(&block));
+    let stream = TcpStream::connect(relay.address).expect("the relay listens");
+    stream.set_nodelay(true).expect("an open socket");
+    let (mut socket, _) =
+        client(format!("ws://{}/api/v1/ws", relay.address), stream).expect("the relay takes a WebSocket");
     let load = Load { way: Way::Unconnected, targets: vec![target], warm_up: 100, measure };
     let (mut bare, mut through) = (Vec::new(), Vec::new());
     let anywhere = processor::pin(0);
     for _ in 0..rounds {
         bare.extend(send(Sender::Ours, 0, &load).map(|sample| sample.p50));
-        through.push(runtime.block_on(web_socket(&mut viewer, &id, Duration::from_millis(measure))));
+        through.push(web_socket(&mut socket, &id, Duration::from_millis(measure)));
     }
     processor::unpin(&anywhere);
     let (bare, through) = (median(bare), median(through));
@@ -97,15 +98,23 @@ pub(crate) fn table(quick: bool) -> String {
     )
 }
 
-/// The median, µs.
-async fn web_socket(viewer: &mut Viewer, id: &str, measure: Duration) -> f64 {
+/// The median, µs. A blocking client that reads no JSON: what it costs itself should not count.
+fn web_socket(socket: &mut WebSocket<TcpStream>, id: &str, measure: Duration) -> f64 {
     let end = Instant::now() + measure;
     let mut durations = Vec::new();
     while Instant::now() < end {
+        let run = format!(r#"{{"type":"run","id":"{}","block":"{id}"}}"#, durations.len());
         let since = Instant::now();
-        let answer = viewer.command(json!({ "type": "run", "block": id })).await;
+        socket.send(Message::text(run)).expect("the relay reads");
+        let answer = loop {
+            match socket.read().expect("the relay answers") {
+                Message::Text(text) if text.contains(r#""type":"answer""#) => break text,
+                // News of the block, as every viewer gets them.
+                _ => {}
+            }
+        };
         durations.push(u64::try_from(since.elapsed().as_nanos()).unwrap_or(u64::MAX));
-        assert_eq!(answer["status"]["Q"], true, "{answer}");
+        assert!(answer.contains(r#""Q":true"#), "{answer}");
     }
     durations.sort_unstable();
     percentile(&durations, 50) / 1_000.0
