@@ -1,5 +1,6 @@
 //! The few things that the page asks the browser for. Every one has an answer where the browser has none.
 
+use cipdeck_shared::config::MsgCipGeneric;
 use js_sys::Date;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use web_sys::{Document, Element, Storage};
@@ -8,6 +9,14 @@ use yew::platform::spawn_local;
 /// Milliseconds since the page was opened. Never goes back.
 pub fn now_ms() -> f64 {
     web_sys::window().and_then(|window| window.performance()).map_or(0.0, |performance| performance.now())
+}
+
+/// Whether a block's name or target contains a text, in upper or lower case.
+pub fn is_found(wanted: &str, config: &MsgCipGeneric) -> bool {
+    // The browser's own: Rust's tables of cases would be 5 kB of the page.
+    let lower = |text: &str| js_sys::JsString::from(text).to_lower_case();
+    let wanted = String::from(lower(wanted.trim()));
+    [&config.name, &config.target_cfg.path].iter().any(|text| lower(text).includes(&wanted, 0))
 }
 
 /// The wall clock as RFC 3339.

@@ -8,15 +8,20 @@ use std::{cell::Cell, rc::Rc};
 
 use cipdeck_frontend::{
     editor::Remark,
-    kit::{NumberField, NumberFieldProps, WindowTable, WindowTableProps},
+    kit::{NumberFieldProps, WindowTable, WindowTableProps, number_field},
     store::DeckId,
 };
 use cipdeck_shared::plan::Severity;
 use page::{find, render, text, try_find, type_into};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
-use yew::{Callback, html};
+use yew::{Callback, Html, component, html};
 
 wasm_bindgen_test_configure!(run_in_browser);
+
+#[component]
+fn NumberField(props: &NumberFieldProps) -> Html {
+    number_field(props)
+}
 
 fn service(text: &str, remarks: Vec<Remark>, on_text: Callback<String>) -> NumberFieldProps {
     NumberFieldProps {

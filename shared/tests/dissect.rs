@@ -140,6 +140,106 @@ fn the_articles_frames_dissect_to_the_common_packet() {
 }
 
 #[test]
+fn a_routed_message_is_explained_around_and_inside() {
+    // the bytes of the wire's own test: 3000 ms, slot 0
+    let bytes = hex!("52 02 20 06 24 01 04 BC 08 00 0E 03 20 0F 24 27 30 01 01 00 01 00");
+    let node = dissect::request(&bytes);
+    assert_eq!(
+        node.to_string(),
+        "0..22 request\n  \
+           0..1 service: 0x52 Unconnected_Send. Passes a request on along a route. Reply to a routed request is the embedded reply (e.g. 0xCC), reply 0xD2 only when the router itself fails.\n  \
+           1..2 path size: 2 words, 4 bytes\n  \
+           2..6 path\n    \
+             2..4 class: 6 (0x06) Connection Manager\n    \
+             4..6 instance: 1 (0x01)\n  \
+           6..22 Unconnected_Send\n    \
+             6..7 time tick: 4: a tick is 16 ms\n    \
+             7..8 timeout ticks: 188 ticks, 3008 ms\n    \
+             8..10 embedded message length: 8 bytes\n    \
+             10..18 embedded message\n      \
+               10..11 service: 0x0e Get_Attribute_Single. Reads one attribute.\n      \
+               11..12 path size: 3 words, 6 bytes\n      \
+               12..18 embedded path\n        \
+                 12..14 class: 15 (0x0f) Parameter\n        \
+                 14..16 instance: 39 (0x27)\n        \
+                 16..18 attribute: 1 (0x01)\n    \
+             18..19 route size: 1 words, 2 bytes\n    \
+             19..20 reserved: 00\n    \
+             20..22 route\n      \
+               20..22 port: 1: backplane, slot 0\n"
+    );
+    let odd = hex!("52 02 20 06 24 01 00 FA 09 00 10 03 20 04 24 96 30 03 55 00 01 00 01 00");
+    let node = dissect::request(&odd);
+    assert_covered(&node, odd.len());
+    assert_eq!(text_of(&node, "pad"), Some("the embedded message has an odd length"));
+    assert_eq!(text_of(&node, "type unknown"), Some("guess: USINT 85"));
+    let cut = dissect::request(&bytes[..15]);
+    assert!(cut.is_broken(), "{cut}");
+    assert_covered(&cut, 15);
+}
+
+#[test]
+fn opening_and_closing_a_connection_is_explained() {
+    let classic = hex!(
+        "54 02 20 06 24 01 0A 0E 00000000 44332211 0100 3713 EFBEADDE 03 000000"
+        "80841E00 F843 80841E00 F843 A3 03 01 00 20 02 24 01"
+    );
+    let node = dissect::request(&classic[..]);
+    let texts = [
+        ("T→O connection id", "0x11223344, in replies"),
+        ("originator serial number", "0xdeadbeef"),
+        ("timeout multiplier", "3: silent for 32 intervals, the connection ends"),
+        ("O→T requested interval", "2000000 µs"),
+        ("O→T parameters", "at most 504 bytes, point to point"),
+        ("transport", "0xa3: class 3, server"),
+    ];
+    for (name, text) in texts {
+        assert_eq!(text_of(&node, name), Some(text), "{node}");
+    }
+    let large = hex!(
+        "5B 02 20 06 24 01 0A 0E 00000000 44332211 0100 3713 EFBEADDE 03 000000"
+        "80841E00 A20F0042 80841E00 A20F0042 A3 02 20 02 24 01"
+    );
+    let node = dissect::request(&large);
+    assert_covered(&node, large.len());
+    assert_eq!(text_of(&node, "T→O parameters"), Some("at most 4002 bytes, point to point"));
+    let opened = hex!("DB000000 0A000000 44332211 0100 3713 EFBEADDE 80841E00 80841E00 00 00");
+    let node = dissect::reply(&opened, Some(&large));
+    assert!(!node.is_broken(), "{node}");
+    assert_eq!(text_of(&node, "O→T connection id"), Some("0x0000000a, in requests"));
+    assert_eq!(text_of(&node, "T→O actual interval"), Some("2000000 µs"));
+
+    let close = hex!("4E 02 20 06 24 01 0A 0E 0100 3713 EFBEADDE 03 00 01 00 20 02 24 01");
+    let node = dissect::request(&close);
+    assert!(!node.is_broken(), "{node}");
+    assert_eq!(text_of(&node, "port"), Some("1: backplane, slot 0"));
+    let node = dissect::reply(&hex!("CE000000 0100 3713 EFBEADDE 00 00"), Some(&close));
+    assert_eq!(text_of(&node, "originator vendor id"), Some("4919 (0x1337)"));
+}
+
+#[test]
+fn a_router_that_refuses_is_told_from_the_target() {
+    // as a ControlLogix answers: st-one-io/node-red-contrib-pccc issue 9
+    let node = dissect::reply(&hex!("D2 00 01 01 15 03 01 00"), Some(&PRODUCT_NAME));
+    assert_covered(&node, 8);
+    let service = text_of(&node, "service").unwrap();
+    assert!(service.contains("Unconnected_Send") && service.contains("a router"), "{service}");
+    assert_eq!(text_of(&node, "remaining path size"), Some("1 words, 2 bytes of the path were left"));
+    // Logix' Read_Tag_Fragmented has the same number.
+    let tag = hex!("52 03 91 04 54 41 47 31 01 00 00 00 00 00");
+    let node = dissect::reply(&hex!("D2 00 00 00 C4 00 2A 00 00 00"), Some(&tag));
+    assert!(text_of(&node, "service").unwrap().contains("Read_Tag_Fragmented"), "{node}");
+    assert_eq!(text_of(&node, "remaining path size"), None);
+}
+
+#[test]
+fn a_connected_frame_has_its_connection_and_its_sequence_count() {
+    let node = dissect::frame(&common::frame("opener.connected_request"));
+    assert!(text_of(&node, "connection id").is_some_and(|id| id.starts_with("0x")), "{node}");
+    assert!(text_of(&node, "sequence count").is_some(), "{node}");
+}
+
+#[test]
 fn devices_are_named_in_list_identity() {
     let node = dissect::frame(&common::frame("opener.list_identity_reply"));
     assert_eq!(text_of(&node, "product name"), Some("OpENer PC"));
@@ -264,6 +364,18 @@ mod any_bytes {
         #[test]
         fn any_request_is_covered(bytes in vec(any::<u8>(), 0..100)) {
             assert_covered(&dissect::request(&bytes), bytes.len());
+        }
+
+        #[test]
+        fn any_request_to_the_connection_manager_is_covered(
+            service in prop::sample::select(vec![0x4E_u8, 0x52, 0x54, 0x5B]),
+            data in vec(any::<u8>(), 0..80),
+        ) {
+            let request = [&[service, 2, 0x20, 6, 0x24, 1][..], &data].concat();
+            assert_covered(&dissect::request(&request), request.len());
+            let reply = [&[service | 0x80, 0, 0, 0][..], &data].concat();
+            assert_covered(&dissect::reply(&reply, Some(&request)), reply.len());
+            assert_covered(&dissect::reply(&reply, None), reply.len());
         }
 
         #[test]

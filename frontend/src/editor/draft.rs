@@ -2,7 +2,7 @@
 
 use cipdeck_shared::{
     api,
-    config::{Channel, MsgCipGeneric, NumberError, read_number},
+    config::{Channel, MsgCipGeneric, NumberError, Profile, read_number},
     plan::{Field, MessagePlan, Severity},
 };
 
@@ -36,6 +36,8 @@ pub enum Edit {
     Flag(Field, bool),
     /// `Channel`
     Channel(Channel),
+    /// `Profile`
+    Profile(Profile),
 }
 
 impl Draft {
@@ -65,6 +67,7 @@ impl Draft {
                 }
             }
             Edit::Channel(channel) => self.config.channel = channel,
+            Edit::Profile(profile) => self.config.profile = profile,
         }
     }
 

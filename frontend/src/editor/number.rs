@@ -13,6 +13,7 @@ pub fn number(config: &MsgCipGeneric, field: &Field) -> Option<i64> {
         Field::Attribute => config.app_cfg.attribute,
         Field::MemberCnt => config.app_cfg.member_cnt,
         Field::MemberId(index) => return config.app_cfg.member_id.get(*index).copied(),
+        Field::KeepAlive => config.keep_alive,
         Field::CipConnMode => config.target_cfg.cip_conn_mode,
         Field::UcmmTimeout => config.target_cfg.ucmm_timeout,
         Field::ConnMsgTimeout => config.target_cfg.conn_msg_timeout,
@@ -45,6 +46,7 @@ pub(super) fn set_number(config: &mut MsgCipGeneric, field: &Field, value: Optio
             let Some(member) = config.app_cfg.member_id.get_mut(*index) else { return };
             member
         }
+        Field::KeepAlive => &mut config.keep_alive,
         Field::CipConnMode => &mut config.target_cfg.cip_conn_mode,
         Field::UcmmTimeout => &mut config.target_cfg.ucmm_timeout,
         Field::ConnMsgTimeout => &mut config.target_cfg.conn_msg_timeout,
@@ -70,6 +72,7 @@ pub(super) fn number_fields() -> Vec<Field> {
         Field::CipConnMode,
         Field::UcmmTimeout,
         Field::ConnMsgTimeout,
+        Field::KeepAlive,
         Field::ReqLength,
         Field::ResDataSize,
     ]

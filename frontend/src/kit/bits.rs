@@ -14,7 +14,7 @@ pub fn status_bits(bits: StatusBits) -> Html {
         html! {
             <li
                 key={*name}
-                class={classes!("bit", on.then_some("on"), name.to_lowercase())}
+                class={classes!("bit", on.then_some("on"), name.to_ascii_lowercase())}
                 title={meaning(*bit)}
                 data-bit={*name}
                 data-on={if on { "true" } else { "false" }}

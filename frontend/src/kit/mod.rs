@@ -18,7 +18,7 @@ pub use self::{
     dialog::Dialog,
     field::{describes, field_row},
     hex_view::HexView,
-    number_field::{NumberField, NumberFieldProps},
+    number_field::{NumberFieldProps, number_field},
     select_field::SelectField,
     state::{Shape, state_mark},
     switch::Switch,

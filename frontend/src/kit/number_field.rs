@@ -30,14 +30,11 @@ pub struct NumberFieldProps {
     pub on_text: Callback<String>,
 }
 
-/// `[14] = 0x0E Get_Attribute_Single`
-#[component]
-pub fn NumberField(props: &NumberFieldProps) -> Html {
-    let on_text = props.on_text.clone();
-    let oninput = use_callback(on_text, |event: InputEvent, on_text| {
-        let input: web_sys::HtmlInputElement = event.target_unchecked_into();
-        on_text.emit(input.value());
-    });
+/// The input with both radices. A function: a component would only cost.
+pub fn number_field(props: &NumberFieldProps) -> Html {
+    let oninput = props
+        .on_text
+        .reform(|event: InputEvent| event.target_unchecked_into::<web_sys::HtmlInputElement>().value());
     let value = read_number(&props.text).ok();
     let radix = value.map(|value| format!("= {}", other_radix(&props.text, value)));
     let parts: Vec<_> = radix.into_iter().chain(props.meaning.as_ref().map(ToString::to_string)).collect();

@@ -18,7 +18,9 @@ pub struct SelectField {
     /// The chosen value.
     pub value: AttrValue,
     /// Value and words of each choice. A value that is none of them is shown as it is.
-    pub choices: [(&'static str, AttrValue); 2],
+    pub choices: Vec<(&'static str, AttrValue)>,
+    /// What the chosen value means.
+    pub readout: Option<AttrValue>,
     /// What is to be said about it.
     pub remarks: Vec<Remark>,
     /// Hears the chosen value.
@@ -44,7 +46,7 @@ impl SelectField {
                 class="input select"
                 name={self.name}
                 aria-invalid={invalid}
-                aria-describedby={describes(&self.id, &self.remarks, None)}
+                aria-describedby={describes(&self.id, &self.remarks, self.readout.as_ref())}
                 {onchange}
             >
                 { for self.choices.iter().map(|(value, words)| option((*value).into(), words)) }
@@ -53,6 +55,6 @@ impl SelectField {
                 }
             </select>
         };
-        field_row(&self.id, &self.label, &self.remarks, None, input)
+        field_row(&self.id, &self.label, &self.remarks, self.readout.as_ref(), input)
     }
 }

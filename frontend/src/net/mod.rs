@@ -1,5 +1,6 @@
 //! The relay: its connection, its REST interface, and when to come back.
 
+mod heard;
 mod reconnect;
 mod relay;
 pub mod rest;

@@ -7,13 +7,14 @@ use std::{
 };
 
 use cipdeck_shared::{
-    api::{Answer, ClientMessage, PROTOCOL_VERSION, Problem, ServerMessage},
+    api::{ClientMessage, PROTOCOL_VERSION, Problem},
     config::BlockId,
 };
 use gloo_timers::callback::{Interval, Timeout};
 use yew::{Callback, platform::spawn_local};
 
 use super::{
+    heard::Heard,
     reconnect::{Action, Input, Phase, Reconnect},
     rest::{self, unreachable},
     sequence::Sequence,
@@ -22,7 +23,7 @@ use super::{
 use crate::{
     browser,
     i18n::tr,
-    store::{RowStore, Shelf, Watch, Watchers},
+    store::{RowStore, Shelf, TargetStore, Watch, Watchers},
 };
 
 /// What the page says about the connection.
@@ -60,6 +61,7 @@ pub struct Relay(Rc<Inner>);
 
 struct Inner {
     rows: RowStore,
+    targets: TargetStore,
     machine: RefCell<Reconnect>,
     sequence: RefCell<Sequence>,
     socket: RefCell<Option<Socket>>,
@@ -79,6 +81,7 @@ impl Relay {
     pub fn new(rows: RowStore, spent: Callback<f64>) -> Self {
         Self(Rc::new(Inner {
             rows,
+            targets: TargetStore::default(),
             machine: RefCell::default(),
             sequence: RefCell::default(),
             socket: RefCell::default(),
@@ -102,6 +105,11 @@ impl Relay {
     /// What to show.
     pub fn link(&self) -> Link {
         self.0.link.borrow().clone()
+    }
+
+    /// What the relay knows of its targets.
+    pub fn targets(&self) -> &TargetStore {
+        &self.0.targets
     }
 
     /// Whether commands reach the relay.
@@ -217,30 +225,32 @@ impl Relay {
         self.0.spent.emit(browser::now_ms() - start);
     }
 
-    fn take(&self, message: ServerMessage) {
-        match message {
-            ServerMessage::Hello { protocol, .. } if protocol != PROTOCOL_VERSION => {
-                self.show(Link::Foreign { protocol });
+    fn take(&self, message: Heard) {
+        match message.kind.as_str() {
+            "hello" if message.protocol != PROTOCOL_VERSION => {
+                self.show(Link::Foreign { protocol: message.protocol });
             }
-            ServerMessage::Hello { .. } => self.greeted(),
-            ServerMessage::Snapshot { seq, blocks, statuses, .. } => {
-                self.0.sequence.borrow_mut().snapshot(seq);
-                self.0.rows.snapshot(blocks, statuses);
+            "hello" => self.greeted(),
+            "snapshot" => {
+                self.0.sequence.borrow_mut().snapshot(message.seq);
+                self.0.targets.snapshot(message.targets);
+                self.0.rows.snapshot(message.blocks, message.statuses);
                 if !self.0.has_snapshot.replace(true) {
                     self.0.watchers.wake();
                 }
             }
-            ServerMessage::Changes { seq, statuses, blocks, removed, .. } => {
-                if self.0.sequence.borrow_mut().changes(seq) {
-                    self.0.rows.changes(statuses, blocks, &removed);
-                }
+            "changes" if self.0.sequence.borrow_mut().changes(message.seq) => {
+                self.0.targets.changes(message.targets, &message.targets_removed);
+                self.0.rows.changes(message.statuses, message.blocks, &message.removed);
             }
-            ServerMessage::Answer { id, answer } => {
-                let refused = self.0.pending.borrow_mut().remove(&id);
-                if let (Some(refused), Answer::Problem(problem)) = (refused, *answer) {
+            "answer" => {
+                let refused = self.0.pending.borrow_mut().remove(&message.id);
+                if let (Some(refused), Some(problem)) = (refused, message.problem) {
                     refused.emit(problem);
                 }
             }
+            // A message of a newer relay that we do not know is none of our business.
+            _ => {}
         }
     }
 

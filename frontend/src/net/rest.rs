@@ -1,7 +1,7 @@
 //! REST: what is asked once and answered once.
 
 use cipdeck_shared::{
-    api::{ExchangeView, Health, Problem, ProblemCode},
+    api::{DiscoverRequest, Discovered, ExchangeView, Health, Problem, ProblemCode},
     config::{Block, BlockId, MsgCipGeneric},
 };
 use gloo_net::http::{Request, RequestBuilder, Response};
@@ -22,7 +22,11 @@ pub async fn create(config: &MsgCipGeneric) -> Answered<Block> {
 
 /// Replaces a block; the block names the revision that it replaces.
 pub async fn replace(block: &Block) -> Answered<Block> {
-    read(send_json(Request::put(&address(&format!("blocks/{}", block.id))), block).await?).await
+    let mut config = block.config.clone();
+    // One way to write configurations instead of two. The relay takes the id from the address.
+    config.extra.insert("revision".to_owned(), block.revision.into());
+    config.extra.insert("id".to_owned(), String::from(block.id).into());
+    read(send_json(Request::put(&address(&format!("blocks/{}", block.id))), &config).await?).await
 }
 
 /// Deletes a block, if it still has this revision.
@@ -37,6 +41,16 @@ pub async fn newest_exchange(id: BlockId) -> Answered<Option<ExchangeView>> {
         read(send(Request::get(&address(&format!("blocks/{id}/exchange")))).await?).await?;
     // RFC 3339 in UTC sorts as text.
     Ok(all.into_iter().max_by(|one, other| one.at.cmp(&other.at)))
+}
+
+/// Where the frames of a block's last messages are, for Wireshark.
+pub fn capture(id: BlockId) -> String {
+    address(&format!("blocks/{id}/exchange.pcapng"))
+}
+
+/// Who is on the network.
+pub async fn discover(request: &DiscoverRequest) -> Answered<Discovered> {
+    read(send_json(Request::post(&address("discover")), request).await?).await
 }
 
 /// A problem that the relay did not report: it could not be reached, or did not speak our language.

@@ -8,7 +8,7 @@ use crate::{
     i18n::tr,
     kit::Shape,
     net::Link,
-    pages::block::age_words,
+    pages::block::{age_words, whole},
 };
 
 /// Word, shape and colour of the connection; a button to try now.
@@ -65,7 +65,8 @@ fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
         Link::Connecting => ("connecting", Shape::Half, tr!("link.connecting")),
         Link::Online { latency_ms: None } => ("online", Shape::Dot, tr!("link.online")),
         Link::Online { latency_ms: Some(ms) } => {
-            ("online", Shape::Dot, tr!("link.online_ms", ms = format!("{ms:.1}")))
+            let tenths = whole(ms * 10.0);
+            ("online", Shape::Dot, tr!("link.online_ms", ms = format!("{}.{}", tenths / 10, tenths % 10)))
         }
         Link::Lost { next_ms, .. } => ("lost", Shape::Cross, tr!("link.lost", seconds = seconds(*next_ms))),
         Link::None { next_ms } => ("none", Shape::Ring, tr!("link.none", seconds = seconds(*next_ms))),
@@ -73,6 +74,6 @@ fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
     }
 }
 
-fn seconds(next_ms: f64) -> String {
-    format!("{:.0}", ((next_ms - browser::now_ms()) / 1_000.0).ceil().max(1.0))
+fn seconds(next_ms: f64) -> u64 {
+    whole(((next_ms - browser::now_ms()) / 1_000.0).ceil().max(1.0))
 }

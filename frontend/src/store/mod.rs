@@ -3,6 +3,7 @@
 mod deck_id;
 mod rows;
 mod shelf;
+mod targets;
 mod trace;
 mod watch;
 
@@ -10,6 +11,7 @@ pub use self::{
     deck_id::{DeckId, NotAnId},
     rows::{AskForFrame, Row, RowStore},
     shelf::Shelf,
+    targets::{Known, TargetStore, target_of},
     trace::{Edge, Trace},
     watch::{Watch, Watchers},
 };

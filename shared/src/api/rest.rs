@@ -151,7 +151,7 @@ pub struct Problem {
 
 /// Stable names of problems.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(from = "String", into = "String")]
 #[non_exhaustive]
 pub enum ProblemCode {
     /// 400
@@ -173,8 +173,50 @@ pub enum ProblemCode {
     /// 503: the relay is stopping, or the block's run was ended by its deletion.
     Unavailable,
     /// A code that this version does not know.
-    #[serde(untagged)]
     Other(String),
+}
+
+impl ProblemCode {
+    /// All that this version knows.
+    pub const ALL: [Self; 9] = [
+        Self::Unreadable,
+        Self::NotPermitted,
+        Self::NotFound,
+        Self::Busy,
+        Self::StaleRevision,
+        Self::TooLarge,
+        Self::Findings,
+        Self::Internal,
+        Self::Unavailable,
+    ];
+
+    /// The word in JSON.
+    pub fn word(&self) -> &str {
+        match self {
+            Self::Unreadable => "unreadable",
+            Self::NotPermitted => "not_permitted",
+            Self::NotFound => "not_found",
+            Self::Busy => "busy",
+            Self::StaleRevision => "stale_revision",
+            Self::TooLarge => "too_large",
+            Self::Findings => "findings",
+            Self::Internal => "internal",
+            Self::Unavailable => "unavailable",
+            Self::Other(word) => word,
+        }
+    }
+}
+
+impl From<String> for ProblemCode {
+    fn from(word: String) -> Self {
+        Self::ALL.into_iter().find(|code| code.word() == word).unwrap_or(Self::Other(word))
+    }
+}
+
+impl From<ProblemCode> for String {
+    fn from(code: ProblemCode) -> Self {
+        code.word().into()
+    }
 }
 
 /// What a command over the WebSocket is answered with.

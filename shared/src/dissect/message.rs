@@ -5,8 +5,9 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use crate::table::{self, Field};
-use crate::wire::{GeneralStatus, ServiceCode};
+use crate::wire::{ClassCode, GeneralStatus, ServiceCode};
 
+use super::connection_manager;
 use super::path;
 use super::tree::{Node, Tree};
 use super::value::{About, Decoded, layout_of_reply, layout_of_request, values};
@@ -38,10 +39,25 @@ pub(super) fn reply_at(bytes: &[u8], at: usize, about: &About) -> Node {
 }
 
 fn fill_request(tree: &mut Tree<'_>, about: &About) -> Option<()> {
-    tree.u8("service", |code| service_text(about, ServiceCode(code)))?;
-    let words = tree.u8("path size", |words| format!("{words} words, {} bytes", 2 * u16::from(words)))?;
-    tree.branch(2 * usize::from(words), "path", path::segments)?;
+    let service = head(tree, about, "path")?;
+    if connection_manager::is_asked(about) {
+        return connection_manager::request(tree, service);
+    }
     data(tree, layout_of_request(about))
+}
+
+/// A request inside of Unconnected_Send. One inside of that is left as bytes: only a puzzle has it.
+pub(super) fn embedded(tree: &mut Tree<'_>) -> Option<()> {
+    let about = About::of(tree.peek().rest());
+    head(tree, &about, "embedded path")?;
+    data(tree, layout_of_request(&about))
+}
+
+fn head(tree: &mut Tree<'_>, about: &About, path: &'static str) -> Option<ServiceCode> {
+    let service = tree.u8("service", |code| service_text(about, ServiceCode(code)))?;
+    let words = tree.u8("path size", |words| format!("{words} words, {} bytes", 2 * u16::from(words)))?;
+    tree.branch(2 * usize::from(words), path, path::segments)?;
+    Some(ServiceCode(service))
 }
 
 fn fill_reply(tree: &mut Tree<'_>, about: &About) -> Option<()> {
@@ -49,6 +65,10 @@ fn fill_reply(tree: &mut Tree<'_>, about: &About) -> Option<()> {
         let service = ServiceCode(code & !ServiceCode::REPLY);
         if code == service.0 {
             return format!("{code:#04x}: not a reply, bit 7 is not set");
+        }
+        if refuses_on_the_way(about, service) {
+            let name = coded(service, table::service(ClassCode::ConnectionManager.0, service));
+            return format!("{code:#04x}, reply to {name} Not the target has answered, but a router.");
         }
         let answers = format!("{code:#04x}, reply to {}", service_text(about, service));
         match about.service {
@@ -69,7 +89,16 @@ fn fill_reply(tree: &mut Tree<'_>, about: &About) -> Option<()> {
             _ => format!("{word} ({word:#06x})"),
         })?;
     }
+    let refused = status != GeneralStatus::Success;
+    if connection_manager::answers(about, service, refused, tree.remaining()) {
+        return connection_manager::reply(tree, service, status);
+    }
     data(tree, layout_of_reply(about, service, status))
+}
+
+/// Somebody else was asked, and the Connection Manager of a router answers.
+fn refuses_on_the_way(about: &About, service: ServiceCode) -> bool {
+    about.service.is_some_and(|asked| asked != service) && service == ServiceCode::UnconnectedSend
 }
 
 fn service_text(about: &About, service: ServiceCode) -> String {

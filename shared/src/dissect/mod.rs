@@ -3,6 +3,7 @@
 //! Total: any bytes give a tree, and every byte is in exactly one leaf. What cannot be understood is a leaf that says
 //! so ([`Node::error`]). What is only guessed is called a guess.
 
+mod connection_manager;
 mod frame;
 mod message;
 mod path;

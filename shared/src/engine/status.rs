@@ -161,7 +161,7 @@ pub enum RefusedBy {
 
 /// What happened. New kinds may appear: a reader keeps the word of one it does not know.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(from = "String", into = "String")]
 #[non_exhaustive]
 pub enum CauseKind {
     /// The device answered with a CIP error.
@@ -193,6 +193,73 @@ pub enum CauseKind {
     /// The relay did not permit the write.
     NotPermitted,
     /// A kind that this version does not know.
-    #[serde(untagged)]
     Other(String),
+}
+
+impl CauseKind {
+    /// All that this version knows.
+    pub const ALL: [Self; 14] = [
+        Self::RefusedByDevice,
+        Self::Timeout,
+        Self::Refused,
+        Self::Unreachable,
+        Self::Unresolved,
+        Self::SessionRefused,
+        Self::EncapsulationStatus,
+        Self::Malformed,
+        Self::Closed,
+        Self::Limit,
+        Self::TooSmall,
+        Self::Invalid,
+        Self::Cancelled,
+        Self::NotPermitted,
+    ];
+
+    /// The word in JSON.
+    pub fn word(&self) -> &str {
+        match self {
+            Self::RefusedByDevice => "refused_by_device",
+            Self::Timeout => "timeout",
+            Self::Refused => "refused",
+            Self::Unreachable => "unreachable",
+            Self::Unresolved => "unresolved",
+            Self::SessionRefused => "session_refused",
+            Self::EncapsulationStatus => "encapsulation_status",
+            Self::Malformed => "malformed",
+            Self::Closed => "closed",
+            Self::Limit => "limit",
+            Self::TooSmall => "too_small",
+            Self::Invalid => "invalid",
+            Self::Cancelled => "cancelled",
+            Self::NotPermitted => "not_permitted",
+            Self::Other(word) => word,
+        }
+    }
+}
+
+impl From<String> for CauseKind {
+    fn from(word: String) -> Self {
+        Self::ALL.into_iter().find(|kind| kind.word() == word).unwrap_or(Self::Other(word))
+    }
+}
+
+impl From<CauseKind> for String {
+    fn from(kind: CauseKind) -> Self {
+        kind.word().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cause_reads_back_from_its_word_and_an_unknown_one_keeps_it() {
+        let other = CauseKind::Other("sunspots".into());
+        for kind in CauseKind::ALL.into_iter().chain([other]) {
+            let json = serde_json::to_string(&kind).unwrap();
+            assert_eq!(json, alloc::format!("\"{}\"", kind.word()));
+            assert_eq!(serde_json::from_str::<CauseKind>(&json).unwrap(), kind);
+        }
+    }
 }

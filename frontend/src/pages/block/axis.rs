@@ -13,14 +13,18 @@ pub(super) fn axis(edges: &[Edge]) -> Html {
         return html! { <p class="axis-empty quiet">{ tr!("axis.empty") }</p> };
     }
     let edges = edges.get(edges.len().saturating_sub(MOST)..).unwrap_or_default();
-    let lanes = StatusBits::NAMES.iter().take(5);
-    let bottom = TOP + LANE * 5;
+    // The two closing bits are rare: drawn when set.
+    let ever = |bit: u16| edges.iter().any(|(_, bits)| bits.has(bit));
+    let lanes: Vec<_> =
+        StatusBits::NAMES.iter().filter(|(bit, _)| *bit <= StatusBits::DN || ever(*bit)).collect();
+    let left = if lanes.len() > 5 { WIDE_LEFT } else { LEFT };
+    let bottom = TOP + LANE * i32::try_from(lanes.len()).unwrap_or(5);
     html! {
         <figure class="axis">
             <figcaption>{ tr!("axis.caption") }</figcaption>
             <svg viewBox={format!("0 0 440 {}", bottom + 18)} role="img" aria-label={spoken(edges)}>
-                { for edges.iter().enumerate().map(|(column, (time, _))| tick(column, *time, edges.len(), bottom)) }
-                { for lanes.enumerate().map(|(lane, (bit, name))| draw_lane(lane, *bit, name, edges)) }
+                { for edges.iter().enumerate().map(|(column, (time, _))| tick(x(left, column, edges.len()), *time, bottom)) }
+                { for lanes.iter().enumerate().map(|(lane, (bit, name))| draw_lane(left, lane, *bit, name, edges)) }
             </svg>
         </figure>
     }
@@ -29,37 +33,39 @@ pub(super) fn axis(edges: &[Edge]) -> Html {
 /// Edges that fit beside each other; the newest are shown.
 const MOST: usize = 8;
 const LEFT: i32 = 34;
-const WIDTH: i32 = 400;
+/// With room for `CIPCONN`.
+const WIDE_LEFT: i32 = 56;
+const RIGHT: i32 = 434;
 const TOP: i32 = 4;
 const LANE: i32 = 16;
 
-fn x(column: usize, columns: usize) -> i32 {
+fn x(left: i32, column: usize, columns: usize) -> i32 {
     let (column, columns) = (i32::try_from(column).unwrap_or(0), i32::try_from(columns).unwrap_or(1));
-    LEFT + WIDTH * column / columns.max(1)
+    left + (RIGHT - left) * column / columns.max(1)
 }
 
-fn tick(column: usize, time: u64, columns: usize, bottom: i32) -> Html {
-    let x = x(column, columns).to_string();
+fn tick(x: i32, time: u64, bottom: i32) -> Html {
+    let x = x.to_string();
     html! { <>
         <line class="axis-tick" x1={x.clone()} x2={x.clone()} y1={TOP.to_string()} y2={bottom.to_string()} />
         <text class="axis-time" {x} y={(bottom + 12).to_string()}>{ duration(time) }</text>
     </> }
 }
 
-fn draw_lane(lane: usize, bit: u16, name: &'static str, edges: &[Edge]) -> Html {
+fn draw_lane(left: i32, lane: usize, bit: u16, name: &'static str, edges: &[Edge]) -> Html {
     let low = TOP + LANE * i32::try_from(lane + 1).unwrap_or(1) - 4;
     let level = |bits: StatusBits| if bits.has(bit) { low - LANE + 6 } else { low };
     let mut path = String::new();
     for (column, (_, bits)) in edges.iter().enumerate() {
         let start = if column == 0 { 'M' } else { 'L' };
-        let (from, to, y) = (x(column, edges.len()), x(column + 1, edges.len()), level(*bits));
+        let (from, to, y) = (x(left, column, edges.len()), x(left, column + 1, edges.len()), level(*bits));
         // Writing to a String cannot fail.
         let _ = write!(path, "{start}{from} {y}L{to} {y}");
     }
     let ever = edges.iter().any(|(_, bits)| bits.has(bit));
     html! { <>
         <text class={classes!("axis-name", ever.then_some("on"))} x="0" y={(low + 1).to_string()}>{ name }</text>
-        <path class={classes!("axis-lane", name.to_lowercase(), ever.then_some("on"))} d={path} />
+        <path class={classes!("axis-lane", name.to_ascii_lowercase(), ever.then_some("on"))} d={path} />
     </> }
 }
 
@@ -74,13 +80,18 @@ fn spoken(edges: &[Edge]) -> String {
 
 /// `412 µs`, `5.1 ms`, `3.00 s`
 pub(crate) fn duration(us: u64) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "µs of a message of at most some seconds")]
-    let value = us as f64;
+    // Whole numbers: Rust's floating point in decimal would be 2 kB of the page.
     match us {
         0 => "0".to_owned(),
         1..1_000 => format!("{us} µs"),
-        1_000..1_000_000 => format!("{:.1} ms", value / 1e3),
-        _ => format!("{:.2} s", value / 1e6),
+        1_000..1_000_000 => {
+            let tenths = (us + 50) / 100;
+            format!("{}.{} ms", tenths / 10, tenths % 10)
+        }
+        _ => {
+            let hundredths = (us + 5_000) / 10_000;
+            format!("{}.{:02} s", hundredths / 100, hundredths % 100)
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The numbers of an error in words, from the tables.
 
 use cipdeck_shared::{
-    engine::{CauseKind, CipStatus},
+    engine::CipStatus,
     table::{self, Entry},
     wire::{EncapsulationStatus, GeneralStatus},
 };
@@ -39,14 +39,10 @@ pub(crate) fn error_words(status: &CipStatus) -> String {
     format!("{codes} {name}").trim_end().to_owned()
 }
 
-/// A cause as JSON names it: the key of its text.
-pub(super) fn cause_key(kind: &CauseKind) -> String {
-    serde_json::to_string(kind).unwrap_or_default().trim_matches('"').to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cipdeck_shared::engine::CauseKind;
 
     fn status(error_id: u16, sub_error_id: u16) -> CipStatus {
         CipStatus { error: true, error_id, sub_error_id, ..CipStatus::default() }
@@ -69,24 +65,8 @@ mod tests {
 
     #[test]
     fn every_cause_that_we_know_has_a_text_and_something_to_try() {
-        use CauseKind::*;
-        for kind in [
-            RefusedByDevice,
-            Timeout,
-            Refused,
-            Unreachable,
-            Unresolved,
-            SessionRefused,
-            EncapsulationStatus,
-            Malformed,
-            Closed,
-            Limit,
-            TooSmall,
-            Invalid,
-            Cancelled,
-            NotPermitted,
-        ] {
-            let key = cause_key(&kind);
+        let on_the_way = ["refused_by_router", "connection_refused"];
+        for key in CauseKind::ALL.iter().map(CauseKind::word).chain(on_the_way) {
             assert!(crate::i18n::try_text(&format!("cause.{key}")).is_some(), "cause.{key}");
             assert!(crate::i18n::try_text(&format!("try.{key}")).is_some(), "try.{key}");
         }

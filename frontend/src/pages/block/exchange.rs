@@ -4,9 +4,10 @@ use std::rc::Rc;
 
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView},
-    config::{BlockId, read_hex, write_hex},
+    config::{BlockId, Profile, read_hex, write_hex},
     dissect,
     engine::Phase,
+    plan::MessagePlan,
     wire::MessageRouterReply,
 };
 use gloo_timers::callback::Timeout;
@@ -21,12 +22,14 @@ pub(super) struct ExchangeProps {
     pub(super) exchange: Option<Rc<ExchangeView>>,
     /// The exchange is not that of the newest run: it has not been fetched yet.
     pub(super) earlier: bool,
+    pub(super) has_run: bool,
 }
 
 /// Request and reply, byte by byte.
 #[component]
 pub(super) fn Exchange(props: &ExchangeProps) -> Html {
-    let request = props.subject.plan.as_ref().map(|plan| plan.request().bytes());
+    let subject = &props.subject;
+    let request = subject.plan.as_ref().map(|plan| sent(plan, subject.profile).to_vec());
     let request_view = use_memo(request, |request| {
         request.as_deref().map(|bytes| (Rc::<[u8]>::from(bytes), Rc::new(dissect::request(bytes))))
     });
@@ -39,7 +42,14 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
     });
     html! {
         <>
-            <h2>{ tr!("bytes.request") }<span class="count">{ count(request_view.as_ref().as_ref().map(|(bytes, _)| bytes.len())) }</span></h2>
+            <h2>
+                { tr!("bytes.request") }
+                <span class="count">{ count(request_view.as_ref().as_ref().map(|(bytes, _)| bytes.len())) }</span>
+                if let Some(plan) = &subject.plan {
+                    <span class="count" data-test="sent-as">{ sent_as(plan, subject.profile) }</span>
+                }
+                { download(props) }
+            </h2>
             if let Some((bytes, tree)) = &*request_view {
                 <HexView label={tr!("bytes.request")} bytes={bytes.clone()} tree={tree.clone()} hint=true test="request-bytes" />
             } else {
@@ -58,6 +68,35 @@ pub(super) fn Exchange(props: &ExchangeProps) -> Html {
                 <p class="quiet">{ if props.exchange.is_some() { tr!("bytes.unanswered") } else { tr!("bytes.no_reply") } }</p>
             }
         </>
+    }
+}
+
+/// The bytes that go out: over a connection the message alone, otherwise with its route around it.
+fn sent(plan: &MessagePlan, profile: Profile) -> &[u8] {
+    match plan.connection() {
+        Some(_) => plan.bytes(),
+        None => plan.routed(profile).message(),
+    }
+}
+
+/// What is around these bytes, or in them.
+fn sent_as(plan: &MessagePlan, profile: Profile) -> AttrValue {
+    match (plan.connection(), plan.routed(profile).route().is_empty()) {
+        (Some(_), _) => tr!("bytes.connected"),
+        (None, false) => tr!("bytes.routed"),
+        (None, true) => AttrValue::default(),
+    }
+}
+
+/// The frames of the block's last messages for Wireshark; only a relay keeps them.
+fn download(props: &ExchangeProps) -> Html {
+    match props.subject.id {
+        DeckId::Stored(id) if props.subject.online && props.has_run => html! {
+            <a class="download" href={rest::capture(id)} download="" title={tr!("bytes.download_title")} data-test="pcapng">
+                { tr!("bytes.download") }
+            </a>
+        },
+        _ => html! {},
     }
 }
 

@@ -7,12 +7,13 @@ use super::subject::Subject;
 use crate::{
     editor::{Edit, number},
     i18n::tr,
-    kit::{CheckField, NumberField},
+    kit::{CheckField, NumberFieldProps, number_field},
 };
 
 /// The id of a field's input: `field-AppCfg-MemberId-1`.
 pub(super) fn field_id(field: &Field) -> AttrValue {
-    let name: String = field.to_string().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    let name: String =
+        field.to_string().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     format!("field-{}", name.trim_end_matches('-')).into()
 }
 
@@ -24,18 +25,16 @@ pub(super) fn member_name(field: &Field) -> AttrValue {
 
 /// A number member.
 pub(super) fn number_member(subject: &Subject, edit: &Callback<Edit>, field: Field) -> Html {
-    html! {
-        <NumberField
-            id={field_id(&field)}
-            name={field.to_string()}
-            label={member_name(&field)}
-            text={subject.draft.text(&field)}
-            meaning={meaning(subject, &field)}
-            placeholder={(field == Field::ReqLength).then(|| tr!("field.all"))}
-            remarks={subject.remarks_of(&field)}
-            on_text={edit.reform(move |text| Edit::Number(field.clone(), text))}
-        />
-    }
+    number_field(&NumberFieldProps {
+        id: field_id(&field),
+        name: field.to_string().into(),
+        label: member_name(&field),
+        text: subject.draft.text(&field).into(),
+        meaning: meaning(subject, &field),
+        placeholder: (field == Field::ReqLength).then(|| tr!("field.all")),
+        remarks: subject.remarks_of(&field),
+        on_text: edit.reform(move |text| Edit::Number(field.clone(), text)),
+    })
 }
 
 /// A BOOL member.
@@ -78,8 +77,11 @@ fn meaning(subject: &Subject, field: &Field) -> Option<AttrValue> {
         (Field::TriggerType, 1) => Some(tr!("field.fast")),
         (Field::TriggerType, ms) => Some(tr!("field.every", ms = ms)),
         (Field::UcmmTimeout, 0) => Some(tr!("field.default_ms", ms = 3_000)),
-        (Field::ConnMsgTimeout, 0) => Some(tr!("field.default_ms", ms = 10_000)),
-        (Field::UcmmTimeout | Field::ConnMsgTimeout, _) => Some(tr!("field.ms")),
+        (Field::ConnMsgTimeout, 0) => Some(tr!("field.connected_default_ms", ms = 10_000)),
+        (Field::ConnMsgTimeout, _) => Some(tr!("field.connected_ms")),
+        (Field::KeepAlive, 0) => Some(tr!("field.no_keep_alive")),
+        (Field::KeepAlive, _) => Some(tr!("field.keep_alive")),
+        (Field::UcmmTimeout, _) => Some(tr!("field.ms")),
         (Field::ReqLength | Field::ResDataSize, _) => Some(tr!("field.bytes")),
         _ => None,
     }

@@ -3,20 +3,18 @@
 use std::rc::Rc;
 
 use cipdeck_shared::{
-    config::{Channel, read_hex},
+    config::read_hex,
     plan::{Field, Severity},
 };
 use yew::prelude::*;
 
 use super::{
+    choices::{channel, mode, profile},
     fields::{field_id, flag_member, member_name, number_member},
-    subject::{Subject, target_words},
+    subject::Subject,
+    way::way,
 };
-use crate::{
-    editor::Edit,
-    i18n::tr,
-    kit::{SelectField, TextField},
-};
+use crate::{editor::Edit, i18n::tr, kit::TextField};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct FormProps {
@@ -40,9 +38,11 @@ pub(super) fn Form(props: &FormProps) -> Html {
     let data = read_hex(&config.req_data).ok().map(|data| tr!("field.byte_count", count = data.len()));
     html! {
         <form class="form" onsubmit={|event: SubmitEvent| event.prevent_default()} data-test="form">
-            { section("TargetCfg".into(), true, None, text(
-                Field::Path, &config.target_cfg.path, target_words(&config.target_cfg.path), "4,192.168.1.100", false,
-            )) }
+            { section("TargetCfg".into(), true, None, html! { <>
+                { text(Field::Path, &config.target_cfg.path, way(subject), "4,192.168.1.100", false) }
+                { path_help() }
+                { mode(subject, edit) }
+            </> }) }
             { section("AppCfg".into(), true, None, html! { <>
                 { number(Field::Service) }
                 { number(Field::Class) }
@@ -64,11 +64,12 @@ pub(super) fn Form(props: &FormProps) -> Html {
                 { channel(subject, edit) }
                 { flag(Field::Resume) }
             </> }) }
-            { section(tr!("form.connection"), has_remarks(subject, &CONNECTION), Some(connection_words(subject)), html! { <>
-                { mode(subject, edit) }
+            { section(tr!("form.connection"), opens_connection(subject), Some(connection_words(subject)), html! { <>
                 { number(Field::UcmmTimeout) }
                 { number(Field::ConnMsgTimeout) }
                 { flag(Field::ConnClose) }
+                { profile(subject, edit) }
+                { number(Field::KeepAlive) }
             </> }) }
             { unknown(subject) }
         </form>
@@ -92,7 +93,31 @@ fn section(title: AttrValue, open: bool, brief: Option<AttrValue>, body: Html) -
 
 const CTRL: [Field; 4] = [Field::TriggerType, Field::Cancel, Field::StrMode, Field::Resume];
 const CONNECTION: [Field; 4] =
-    [Field::CipConnMode, Field::UcmmTimeout, Field::ConnMsgTimeout, Field::ConnClose];
+    [Field::UcmmTimeout, Field::ConnMsgTimeout, Field::ConnClose, Field::KeepAlive];
+
+/// A connection has times of its own.
+fn opens_connection(subject: &Subject) -> bool {
+    subject.draft.config.target_cfg.cip_conn_mode == 1 || has_remarks(subject, &CONNECTION)
+}
+
+/// What can be written as a path, by examples.
+fn path_help() -> Html {
+    let example = |path: &'static str, meaning: AttrValue| {
+        html! { <><dt class="mono">{ path }</dt><dd>{ meaning }</dd></> }
+    };
+    html! {
+        <details class="path-help" data-test="path-help">
+            <summary>{ tr!("path.title") }</summary>
+            <dl>
+                { example("4,192.168.1.100", tr!("path.direct")) }
+                { example("4,192.168.1.100,1,0", tr!("path.slot")) }
+                { example("4,192.168.1.100,2,10.0.0.5", tr!("path.link")) }
+                { example("4,192.168.1.100,1,3,2,10.0.0.5", tr!("path.three")) }
+                { example("0,0", tr!("path.built_in")) }
+            </dl>
+        </details>
+    }
+}
 
 /// Members that are sent, and those with something to say about them.
 fn is_shown(subject: &Subject, member: usize) -> bool {
@@ -113,39 +138,9 @@ fn trigger_words(trigger: i64) -> AttrValue {
 }
 
 fn connection_words(subject: &Subject) -> AttrValue {
-    let mode = match subject.draft.config.target_cfg.cip_conn_mode {
-        0 => tr!("form.unconnected"),
-        _ => tr!("form.class_3"),
-    };
-    let timeout = subject.plan.as_ref().map(|plan| tr!("form.timeout", ms = plan.ucmm_timeout_ms()));
-    timeout.map_or(mode.clone(), |timeout| format!("{mode}, {timeout}").into())
-}
-
-fn channel(subject: &Subject, edit: &Callback<Edit>) -> Html {
-    SelectField {
-        id: "field-Channel".into(),
-        name: "Channel".into(),
-        label: "Channel".into(),
-        value: String::from(subject.draft.config.channel).into(),
-        choices: [("controller", tr!("form.channel_controller")), ("monitor", tr!("form.channel_monitor"))],
-        remarks: Vec::new(),
-        on_choice: edit.reform(|value: String| Edit::Channel(Channel::try_from(value).unwrap_or_default())),
-    }
-    .draw()
-}
-
-fn mode(subject: &Subject, edit: &Callback<Edit>) -> Html {
-    let field = Field::CipConnMode;
-    SelectField {
-        id: field_id(&field),
-        name: field.to_string().into(),
-        label: member_name(&field),
-        value: subject.draft.text(&field).into(),
-        choices: [("0", tr!("form.mode_0")), ("1", tr!("form.mode_1"))],
-        remarks: subject.remarks_of(&field),
-        on_choice: edit.reform(|value| Edit::Number(Field::CipConnMode, value)),
-    }
-    .draw()
+    let Some(plan) = &subject.plan else { return AttrValue::default() };
+    let ms = plan.connection().map_or(plan.ucmm_timeout_ms(), |connection| connection.timeout_ms);
+    tr!("form.timeout", ms = ms)
 }
 
 /// Findings about something that has no input of its own.

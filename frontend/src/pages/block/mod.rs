@@ -1,6 +1,7 @@
 //! One block: edited on the left, drawn on the right, its bytes and their meaning below.
 
 mod axis;
+mod choices;
 mod codes;
 mod commands;
 mod drawing;
@@ -12,6 +13,7 @@ mod notice;
 mod outcome;
 mod subject;
 mod trouble;
+mod way;
 mod write_dialog;
 
 use std::rc::Rc;
@@ -39,7 +41,7 @@ use crate::{
 pub(crate) use self::{
     axis::duration,
     codes::error_words,
-    outcome::{age_words, decode},
+    outcome::{age_words, decode, whole},
 };
 
 /// Which block.
@@ -59,7 +61,8 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
     exchange::use_exchange(id, row.as_ref().map_or(0, |row| row.status.runs));
     let online = bench.relay().is_online();
     let config = row.as_ref().map(|row| (row.config.clone(), row.revision));
-    let subject = use_memo((id, config, draft, online), {
+    let known = row.as_ref().and_then(|row| bench.relay().targets().profile(&row.config.target_cfg.path));
+    let subject = use_memo((id, config, draft, online, known), {
         let bench = bench.clone();
         move |_| Subject::of(&bench, id)
     });
@@ -89,7 +92,7 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
                 <Outcome row={row.clone()} />
             </section>
             <section class="bytes" aria-label={tr!("bytes.label")}>
-                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} {earlier} />
+                <Exchange subject={subject.clone()} exchange={row.exchange.clone()} {earlier} has_run={row.status.runs > 0} />
             </section>
         </article>
     }

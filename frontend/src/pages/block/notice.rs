@@ -31,7 +31,7 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
     match notice {
         None => html! {},
         Some(Notice::Problem(problem)) => html! {
-            <div class="notice" role="alert" data-test="problem" data-code={code(&problem)}>
+            <div class="notice" role="alert" data-test="problem" data-code={problem.code.word().to_owned()}>
                 <p>{ words(&problem) }</p>
                 <button type="button" class="quiet-button" onclick={on_dismiss}>{ tr!("notice.dismiss") }</button>
             </div>
@@ -42,13 +42,8 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
     }
 }
 
-/// The code as JSON has it.
-fn code(problem: &Problem) -> String {
-    serde_json::to_string(&problem.code).unwrap_or_default().trim_matches('"').to_owned()
-}
-
 fn words(problem: &Problem) -> String {
-    let code = code(problem);
+    let code = problem.code.word();
     // The detail of a relay is for people, too; ours is the one that the page translates.
     match (try_text(&format!("problem.code_{code}")), &problem.code) {
         (Some(words), ProblemCode::Findings | ProblemCode::NotFound) => words,

@@ -42,7 +42,7 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
                 </span>
             </h2>
             if status.phase == Phase::Failed {
-                { trouble(status) }
+                { trouble(status, &row.config.target_cfg.path) }
             }
             if let Some(last) = &status.last {
                 <div class={classes!("good", (!status.q).then_some("stale"))}>
@@ -109,11 +109,17 @@ fn age(last: &LastSuccess) -> AttrValue {
 pub(crate) fn age_words(seconds: f64) -> AttrValue {
     match seconds {
         ..1.5 => tr!("age.now"),
-        ..90.0 => tr!("age.seconds", count = format!("{seconds:.0}")),
-        ..5_400.0 => tr!("age.minutes", count = format!("{:.0}", seconds / 60.0)),
-        ..129_600.0 => tr!("age.hours", count = format!("{:.0}", seconds / 3_600.0)),
-        _ => tr!("age.days", count = format!("{:.0}", seconds / 86_400.0)),
+        ..90.0 => tr!("age.seconds", count = whole(seconds)),
+        ..5_400.0 => tr!("age.minutes", count = whole(seconds / 60.0)),
+        ..129_600.0 => tr!("age.hours", count = whole(seconds / 3_600.0)),
+        _ => tr!("age.days", count = whole(seconds / 86_400.0)),
     }
+}
+
+/// Rounded. Rust's floating point in decimal would be 2 kB of the page.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an age, saturating")]
+pub(crate) fn whole(value: f64) -> u64 {
+    value.round() as u64
 }
 
 #[cfg(test)]

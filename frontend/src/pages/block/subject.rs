@@ -1,7 +1,7 @@
 //! What a block's page is about: the draft, checked.
 
 use cipdeck_shared::{
-    config::{Target, TargetPath},
+    config::Profile,
     plan::{Field, MessagePlan, TriggerType},
 };
 use yew::AttrValue;
@@ -21,6 +21,8 @@ pub(crate) struct Subject {
     pub(crate) revision: u64,
     pub(crate) draft: Draft,
     pub(crate) plan: Option<MessagePlan>,
+    /// What the target is, as far as that is known.
+    pub(crate) profile: Profile,
     pub(crate) remarks: Vec<Remark>,
     pub(crate) unsaved: bool,
     pub(crate) online: bool,
@@ -32,9 +34,24 @@ impl Subject {
         let draft = bench.draft(id)?;
         let revision = bench.rows().row(id)?.revision;
         let (plan, remarks) = draft.check();
+        let known = bench.relay().targets().profile(&draft.config.target_cfg.path);
+        let profile = match draft.config.profile {
+            Profile::Auto => known.unwrap_or_default(),
+            chosen => chosen,
+        };
         let place = bench.place(plan.as_ref().map(MessagePlan::target));
         let online = bench.relay().is_online();
-        Some(Self { id, revision, draft, plan, remarks, unsaved: bench.is_unsaved(id), online, place })
+        Some(Self {
+            id,
+            revision,
+            draft,
+            plan,
+            profile,
+            remarks,
+            unsaved: bench.is_unsaved(id),
+            online,
+            place,
+        })
     }
 
     /// What is said about a field.
@@ -67,13 +84,4 @@ impl Subject {
             (Some(_), Place::Relay | Place::Browser) => None,
         }
     }
-}
-
-/// Where a path leads, in words.
-pub(crate) fn target_words(path: &str) -> Option<AttrValue> {
-    let path: TargetPath = path.parse().ok()?;
-    Some(match path.target {
-        Target::BuiltIn => tr!("target.built_in"),
-        Target::Network(endpoint) => tr!("target.direct", host = endpoint.host, port = endpoint.port),
-    })
 }

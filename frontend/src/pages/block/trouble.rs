@@ -2,22 +2,27 @@
 
 use cipdeck_shared::{
     api::BlockStatus,
-    engine::Cause,
+    engine::{Cause, RefusedBy},
     table::{Confidence, Entry},
 };
 use yew::prelude::*;
 
-use super::codes::{cause_key, entries};
+use super::{codes::entries, way::stuck_at};
 use crate::i18n::{tr, try_text};
 
-/// Everything known about a failed run.
-pub(super) fn trouble(status: &BlockStatus) -> Html {
+/// Everything known about a failed run of a block with this path.
+pub(super) fn trouble(status: &BlockStatus, path: &str) -> Html {
     let codes = &status.status;
     let cause = status.cause.as_ref();
     let entries = entries(codes, cause.and_then(|cause| cause.status));
-    let key = cause.map(|cause| cause_key(&cause.what)).unwrap_or_default();
+    let key = match cause.and_then(|cause| cause.by) {
+        Some(RefusedBy::Router) => "refused_by_router",
+        Some(RefusedBy::ForwardOpen) => "connection_refused",
+        None => cause.map_or("", |cause| cause.what.word()),
+    };
+    let stuck = cause.and_then(|cause| stuck_at(path, cause));
     // A cause of a newer relay has no text here: its own word is better than nothing.
-    let what = try_text(&format!("cause.{key}")).unwrap_or_else(|| key.clone());
+    let what = try_text(&format!("cause.{key}")).unwrap_or_else(|| key.to_owned());
     let tries = try_text(&format!("try.{key}"));
     let hints: Vec<_> = entries.iter().map(|entry| entry.hint).filter(|hint| !hint.is_empty()).collect();
     html! {
@@ -26,7 +31,7 @@ pub(super) fn trouble(status: &BlockStatus) -> Html {
                 <span class="trouble-codes mono" data-test="error-codes">{ numbers(status) }</span>
                 <b data-test="error-name">{ entries.first().map_or("", |entry| entry.name) }</b>
             </p>
-            <p>{ what }{ " " }{ detail(cause) }</p>
+            <p data-test="cause">{ what }{ " " }{ stuck }{ " " }{ detail(cause) }</p>
             { acted(cause) }
             <ul class="entries-of-error">{ for entries.iter().map(explain) }</ul>
             if tries.is_some() || !hints.is_empty() {

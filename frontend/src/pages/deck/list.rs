@@ -8,6 +8,7 @@ use yew::prelude::*;
 
 use super::dialogs::{Asked, dialog};
 use crate::{
+    browser,
     hooks::{use_draft, use_row, use_workbench},
     i18n::tr,
     kit::state_mark,
@@ -102,9 +103,7 @@ fn Entry(props: &EntryProps) -> Html {
     let (row, draft) = (use_row(props.id), use_draft(props.id));
     let Some(row) = row else { return html! {} };
     let config = draft.as_ref().map_or(&*row.config, |draft| &draft.config);
-    let wanted = props.filter.trim().to_lowercase();
-    let found = |text: &str| text.to_lowercase().contains(&wanted);
-    if !found(&config.name) && !found(&config.target_cfg.path) {
+    if !browser::is_found(&props.filter, config) {
         return html! {};
     }
     html! {

@@ -10,6 +10,7 @@ use yew::prelude::*;
 
 use self::{row::MonitorRow, summary::Summary};
 use crate::{
+    browser,
     hooks::{use_ids, use_title, use_workbench},
     i18n::tr,
     kit::WindowTable,
@@ -70,16 +71,9 @@ pub fn MonitorPage() -> Html {
 
 /// Entries whose name or target contains the text.
 fn found(rows: &RowStore, ids: &Rc<[DeckId]>, filter: &str) -> Rc<[DeckId]> {
-    let wanted = filter.trim().to_lowercase();
-    if wanted.is_empty() {
+    if filter.trim().is_empty() {
         return ids.clone();
     }
-    let is_found = |id: &DeckId| {
-        rows.row(*id).is_some_and(|row| {
-            let config = &row.config;
-            config.name.to_lowercase().contains(&wanted)
-                || config.target_cfg.path.to_lowercase().contains(&wanted)
-        })
-    };
+    let is_found = |id: &DeckId| rows.row(*id).is_some_and(|row| browser::is_found(filter, &row.config));
     ids.iter().copied().filter(is_found).collect()
 }

@@ -1,0 +1,101 @@
+//! The relay's targets: sessions, connections, and who does not answer.
+
+use std::{cell::RefCell, fmt, rc::Rc};
+
+use cipdeck_shared::{
+    api::TargetStatus,
+    config::{Profile, TargetPath},
+    engine::TargetState,
+};
+use yew::Callback;
+
+use super::{
+    shelf::Shelf,
+    watch::{Watch, Watchers},
+};
+use crate::browser;
+
+/// A handle to the targets. Clones are the same store.
+#[derive(Clone, Default)]
+pub struct TargetStore(Rc<Inner>);
+
+#[derive(Default)]
+struct Inner {
+    targets: RefCell<Shelf<String, Rc<Known>>>,
+    watchers: Watchers,
+}
+
+/// What the relay has said about a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// As the relay said it.
+    pub status: TargetStatus,
+    /// When, in ms of [`browser::now_ms`].
+    pub heard_ms: f64,
+}
+
+impl Known {
+    /// Seconds since something last went to or came from the target.
+    pub fn idle_s(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "ms since the relay was started")]
+        let idle_ms = self.status.idle_ms as f64;
+        (idle_ms + browser::now_ms() - self.heard_ms) / 1_000.0
+    }
+
+    /// Whether it did not answer.
+    pub fn is_down(&self) -> bool {
+        self.status.state == TargetState::Down
+    }
+}
+
+impl TargetStore {
+    /// All targets, by name.
+    pub fn all(&self) -> Vec<Rc<Known>> {
+        self.0.targets.borrow().values().cloned().collect()
+    }
+
+    /// What kind of device is at the end of a path's first hop, if it has said so.
+    pub fn profile(&self, path: &str) -> Option<Profile> {
+        self.0.targets.borrow().get(&target_of(path)?)?.status.profile
+    }
+
+    /// The relay's whole state.
+    pub fn snapshot(&self, targets: Vec<TargetStatus>) {
+        *self.0.targets.borrow_mut() = Shelf::default();
+        self.put(targets);
+    }
+
+    /// What has changed in the relay.
+    pub fn changes(&self, targets: Vec<TargetStatus>, removed: &[String]) {
+        if targets.is_empty() && removed.is_empty() {
+            return;
+        }
+        self.0.targets.borrow_mut().retain(|name, _| !removed.contains(name));
+        self.put(targets);
+    }
+
+    /// Wakes when any target looks different.
+    pub fn watch(&self, wake: Callback<()>) -> Watch {
+        self.0.watchers.watch(wake)
+    }
+
+    fn put(&self, targets: Vec<TargetStatus>) {
+        let heard_ms = browser::now_ms();
+        for status in targets {
+            let known = Rc::new(Known { status, heard_ms });
+            self.0.targets.borrow_mut().insert(known.status.target.clone(), known);
+        }
+        self.0.watchers.wake();
+    }
+}
+
+/// The name under which the relay knows the target of a path.
+pub fn target_of(path: &str) -> Option<String> {
+    Some(path.parse::<TargetPath>().ok()?.target.to_string())
+}
+
+impl fmt::Debug for TargetStore {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "TargetStore({} targets)", self.0.targets.borrow().len())
+    }
+}
