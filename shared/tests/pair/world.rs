@@ -197,6 +197,7 @@ impl World {
 
     /// Ends everything, and waits until every watchdog has run.
     pub(crate) fn stop(&mut self) {
+        self.actions.retain(|_, action| !matches!(action, Action::Press(_)));
         self.engine.stop(self.now);
         self.pump();
         self.pass(60_000);
