@@ -1,6 +1,6 @@
 //! Communication buffers: who has one, who waits. 2080-RM001D p. 215.
 
-use alloc::collections::{BTreeSet, VecDeque};
+use alloc::collections::VecDeque;
 
 use crate::config::BlockId;
 
@@ -17,7 +17,8 @@ pub const CONTROLLER_CONNECTIONS: usize = 16;
 #[derive(Debug)]
 pub struct Buffers {
     limit: usize,
-    granted: BTreeSet<BlockId>,
+    /// How many are held.
+    held: usize,
     waiting: VecDeque<BlockId>,
     /// Buffers are being granted right now: who has failed at once is followed by the next one there.
     pub(super) granting: bool,
@@ -35,7 +36,7 @@ impl Buffers {
     }
 
     const fn with_limit(limit: usize) -> Self {
-        Self { limit, granted: BTreeSet::new(), waiting: VecDeque::new(), granting: false }
+        Self { limit, held: 0, waiting: VecDeque::new(), granting: false }
     }
 
     /// A message wants a buffer.
@@ -45,18 +46,19 @@ impl Buffers {
 
     /// A message has ended, wherever it was.
     pub fn release(&mut self, block: BlockId) {
-        if !self.granted.remove(&block) {
-            self.waiting.retain(|waiting| *waiting != block);
+        match self.waiting.iter().position(|waiting| *waiting == block) {
+            Some(place) => drop(self.waiting.remove(place)),
+            None => self.held = self.held.saturating_sub(1),
         }
     }
 
     /// The next message that gets a buffer now.
     pub fn poll_grant(&mut self) -> Option<BlockId> {
-        if self.granted.len() >= self.limit {
+        if self.held >= self.limit {
             return None;
         }
         let block = self.waiting.pop_front()?;
-        self.granted.insert(block);
+        self.held += 1;
         Some(block)
     }
 

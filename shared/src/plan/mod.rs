@@ -120,6 +120,11 @@ impl MessagePlan {
         self.routes.of(profile)
     }
 
+    /// Whether the way depends on the kind of device.
+    pub const fn ways_differ(&self) -> bool {
+        self.routes.differ()
+    }
+
     /// What the target is said to be.
     pub const fn profile(&self) -> Profile {
         self.profile

@@ -54,6 +54,10 @@ impl Routes {
         Ok(Self { typed: Routed::new(request, route.clone(), timeout_ms)?, trimmed: trimmed.transpose()? })
     }
 
+    pub(super) const fn differ(&self) -> bool {
+        self.trimmed.is_some()
+    }
+
     pub(super) fn of(&self, profile: Profile) -> &Routed {
         let trimmed = self.trimmed.as_ref().filter(|_| profile == Profile::Micro800);
         trimmed.unwrap_or(&self.typed)

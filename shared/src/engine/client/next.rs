@@ -138,6 +138,5 @@ impl Client {
 
 /// Whether it matters what kind of device it is.
 fn needs_identity(plan: &MessagePlan) -> bool {
-    let routes_differ = plan.routed(Profile::Micro800) != plan.routed(Profile::Generic);
-    plan.profile() == Profile::Auto && (plan.connection().is_some() || routes_differ)
+    plan.profile() == Profile::Auto && (plan.connection().is_some() || plan.ways_differ())
 }

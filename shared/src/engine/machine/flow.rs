@@ -192,11 +192,11 @@ impl Engine {
 
     pub(super) fn rearm(&mut self, block: BlockId) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
-        let due = entry.due();
-        if due != entry.wake {
-            entry.wake.map(|old| self.timers.remove(&(old, block)));
-            due.map(|at| self.timers.insert((at, block)));
-            entry.wake = due;
+        // One that is too early does no harm: most messages end long before their time.
+        let due = entry.due().filter(|due| entry.wake.is_none_or(|wake| *due < wake));
+        if let Some(due) = due {
+            entry.wake.replace(due).map(|old| self.timers.remove(&(old, block)));
+            self.timers.insert((due, block));
         }
     }
 }

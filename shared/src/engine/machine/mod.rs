@@ -28,6 +28,7 @@ pub struct Engine {
     monitor: Buffers,
     clients: BTreeMap<Target, Client>,
     links: BTreeMap<LinkId, Target>,
+    /// When blocks have to be looked at; each is here once at most, perhaps too early.
     timers: BTreeSet<(Instant, BlockId)>,
     /// When clients have something to do without a block; each is here once at most, perhaps too early.
     housekeeping: BTreeSet<(Instant, Target)>,
@@ -220,7 +221,11 @@ impl Engine {
 
     /// Time has passed. Too early is harmless.
     pub fn handle_timeout(&mut self, now: Instant) {
-        while let Some((_, block)) = self.timers.first().copied().filter(|(at, _)| *at <= now) {
+        while self.timers.first().is_some_and(|(at, _)| *at <= now) {
+            let Some((_, block)) = self.timers.pop_first() else { break };
+            if let Some(entry) = self.blocks.get_mut(&block) {
+                entry.wake = None;
+            }
             self.step(block, Input::Tick, now);
             self.cycle(block, now);
             self.rearm(block);
