@@ -10,7 +10,8 @@ use crate::{
     net::Relay,
     notice::NoticeStore,
     pages::{
-        connection::Connection, deck::DeckPage, help::HelpPage, monitor::MonitorPage, not_found::not_found,
+        connection::Connection, connections::ConnectionsPage, deck::DeckPage, help::HelpPage,
+        monitor::MonitorPage, not_found::not_found,
     },
     route::{self, Route, link, use_route},
     store::RowStore,
@@ -27,9 +28,7 @@ pub fn App() -> Html {
     let bench = use_memo((), |()| open());
     html! {
         <ContextProvider<Workbench> context={(*bench).clone()}>
-            <ContextProvider<RowStore> context={bench.rows().clone()}>
-                <Frame />
-            </ContextProvider<RowStore>>
+            <Frame />
         </ContextProvider<Workbench>>
     }
 }
@@ -77,6 +76,7 @@ fn navigation(route: Route) -> Html {
             <ul>
                 { entry(Route::Deck, tr!("nav.deck")) }
                 { entry(Route::Monitor, tr!("nav.monitor")) }
+                { entry(Route::Connections, tr!("nav.connections")) }
                 { entry(Route::Help, tr!("nav.help")) }
             </ul>
         </nav>
@@ -88,6 +88,7 @@ fn page(route: Route) -> Html {
         Route::Deck => html! { <DeckPage /> },
         Route::Block(id) => html! { <DeckPage {id} /> },
         Route::Monitor => html! { <MonitorPage /> },
+        Route::Connections => html! { <ConnectionsPage /> },
         Route::Help => html! { <HelpPage /> },
         Route::NotFound => not_found(),
     }

@@ -30,6 +30,11 @@ pub fn age_s(at: &str) -> Option<f64> {
     (!then.is_nan()).then(|| ((Date::now() - then) / 1_000.0).max(0.0))
 }
 
+/// `07:36:12`: the time of day here of a time in RFC 3339.
+pub fn time_of_day(at: &str) -> String {
+    Date::new(&at.into()).to_locale_time_string("en-GB").into()
+}
+
 /// Calls once before the next picture is drawn.
 pub fn before_next_frame(call: Box<dyn FnOnce()>) {
     let closure = Closure::once_into_js(call);

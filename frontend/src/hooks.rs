@@ -1,6 +1,6 @@
 //! How components learn of changes outside the virtual DOM.
 
-use std::rc::Rc;
+use std::{cell::Cell, rc::Rc};
 
 use gloo_timers::callback::Interval;
 use yew::prelude::*;
@@ -10,7 +10,7 @@ use crate::{
     editor::Draft,
     net::Link,
     notice::Notice,
-    store::{DeckId, Row, RowStore},
+    store::{DeckId, Row},
     workbench::Workbench,
 };
 
@@ -23,7 +23,7 @@ pub fn use_workbench() -> Workbench {
 /// One row; renders once in a frame in which it has changed.
 #[hook]
 pub fn use_row(id: DeckId) -> Option<Rc<Row>> {
-    let store = use_context::<RowStore>().expect("the page provides a RowStore");
+    let store = use_workbench().rows().clone();
     let update = use_force_update();
     use_effect_with((store.clone(), id), move |(store, id)| {
         let watch = store.watch(*id, Callback::from(move |()| update.force_update()));
@@ -35,7 +35,7 @@ pub fn use_row(id: DeckId) -> Option<Rc<Row>> {
 /// All entries; renders when one comes or goes.
 #[hook]
 pub fn use_ids() -> Rc<[DeckId]> {
-    let store = use_context::<RowStore>().expect("the page provides a RowStore");
+    let store = use_workbench().rows().clone();
     let update = use_force_update();
     use_effect_with(store.clone(), move |store| {
         let watch = store.watch_ids(Callback::from(move |()| update.force_update()));
@@ -79,6 +79,44 @@ pub fn use_notice(id: DeckId) -> Option<Notice> {
     });
     bench.notices().notice(id)
 }
+
+/// The targets; renders when one looks different.
+#[hook]
+pub fn use_targets() {
+    let bench = use_workbench();
+    let update = use_force_update();
+    use_effect_with(bench, move |bench| {
+        let watch = bench.relay().targets().watch(Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+}
+
+/// Renders four times a second at most while rows or targets change, and every second for their ages: for what looks at
+/// all of them.
+#[hook]
+pub fn use_rows_now_and_then() {
+    let bench = use_workbench();
+    let update = use_force_update();
+    use_effect_with(bench, move |bench| {
+        let changed = Rc::new(Cell::new(0));
+        let wake = Callback::from({
+            let changed = changed.clone();
+            move |()| changed.set(SECOND)
+        });
+        let watches = (bench.rows().watch_frames(wake.clone()), bench.relay().targets().watch(wake));
+        let ticks = Interval::new(250, move || {
+            changed.set(changed.get() + 1);
+            if changed.get() >= SECOND {
+                changed.set(0);
+                update.force_update();
+            }
+        });
+        move || drop((watches, ticks))
+    });
+}
+
+/// Ticks of 250 ms.
+const SECOND: u8 = 4;
 
 /// Names the page in the browser's tab: `drive-current · cipdeck`.
 #[hook]

@@ -16,6 +16,8 @@ pub enum Route {
     Block(DeckId),
     /// All blocks, live.
     Monitor,
+    /// Buffers, targets, discovery.
+    Connections,
     /// Words and keys.
     Help,
     /// Everything else.
@@ -31,6 +33,7 @@ impl Route {
             None => match path {
                 "" => Self::Deck,
                 "/monitor" => Self::Monitor,
+                "/connections" => Self::Connections,
                 "/help" => Self::Help,
                 _ => Self::NotFound,
             },
@@ -43,6 +46,7 @@ impl Route {
             Self::Deck => "/".to_owned(),
             Self::Block(id) => format!("/deck/{id}"),
             Self::Monitor => "/monitor".to_owned(),
+            Self::Connections => "/connections".to_owned(),
             Self::Help => "/help".to_owned(),
             Self::NotFound => "/404".to_owned(),
         }
@@ -135,9 +139,15 @@ mod tests {
     #[test]
     fn a_page_is_found_by_the_path_that_it_writes() {
         let block = Route::Block(DeckId::Stored(BlockId(7)));
-        for route in
-            [Route::Deck, block, Route::Block(DeckId::New(1)), Route::Monitor, Route::Help, Route::NotFound]
-        {
+        for route in [
+            Route::Deck,
+            block,
+            Route::Block(DeckId::New(1)),
+            Route::Monitor,
+            Route::Connections,
+            Route::Help,
+            Route::NotFound,
+        ] {
             assert_eq!(Route::read(&route.path()), route);
         }
         assert_eq!(Route::read("/monitor/"), Route::Monitor);

@@ -33,9 +33,7 @@ struct DeskProps {
 fn Desk(props: &DeskProps) -> Html {
     html! {
         <ContextProvider<Workbench> context={props.bench.clone()}>
-            <ContextProvider<RowStore> context={props.bench.rows().clone()}>
-                <BlockPane id={props.id} />
-            </ContextProvider<RowStore>>
+            <BlockPane id={props.id} />
         </ContextProvider<Workbench>>
     }
 }

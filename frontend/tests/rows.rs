@@ -10,8 +10,12 @@ use std::{
 };
 
 use cipdeck_frontend::{
+    editor::DraftStore,
     hooks::use_row,
+    net::Relay,
+    notice::NoticeStore,
     store::{DeckId, RowStore},
+    workbench::Workbench,
 };
 use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
 use page::{render, text};
@@ -45,18 +49,18 @@ fn Line(props: &LineProps) -> Html {
 
 #[derive(Clone, PartialEq, Properties)]
 struct LinesProps {
-    rows: RowStore,
+    bench: Workbench,
     renders: Vec<Renders>,
 }
 
 #[component]
 fn Lines(props: &LinesProps) -> Html {
     html! {
-        <ContextProvider<RowStore> context={props.rows.clone()}>
+        <ContextProvider<Workbench> context={props.bench.clone()}>
             { for (1..).zip(&props.renders).map(|(number, renders)| html! {
                 <Line key={number} id={DeckId::Stored(BlockId(number))} renders={renders.clone()} />
             }) }
-        </ContextProvider<RowStore>>
+        </ContextProvider<Workbench>>
     }
 }
 
@@ -68,8 +72,11 @@ async fn three_changes_in_one_frame_render_one_row_once_and_the_other_never() {
     let block =
         |number| Block { id: BlockId(number), revision: 1, config: MsgCipGeneric::product_name("0,0") };
     rows.snapshot(vec![block(1), block(2)], vec![]);
+    let (relay, drafts) =
+        (Relay::new(rows.clone(), Callback::noop()), DraftStore::new(None, Rc::new(|_| ())));
+    let bench = Workbench::new(rows.clone(), drafts, relay, NoticeStore::default());
     let renders = vec![Renders(Rc::default()), Renders(Rc::default())];
-    let root = render::<Lines>(LinesProps { rows: rows.clone(), renders: renders.clone() }).await;
+    let root = render::<Lines>(LinesProps { bench, renders: renders.clone() }).await;
     for flush in asked.take() {
         flush();
     }

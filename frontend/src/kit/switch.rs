@@ -3,41 +3,33 @@
 use yew::prelude::*;
 
 /// A switch.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct SwitchProps {
+#[derive(Clone, Debug)]
+pub struct Switch {
     /// Visible name.
-    pub label: AttrValue,
+    pub label: &'static str,
     /// On?
     pub on: bool,
     /// Cannot be used now.
-    #[prop_or_default]
     pub disabled: bool,
     /// What it does.
-    #[prop_or_default]
-    pub title: Option<AttrValue>,
+    pub title: AttrValue,
     /// Hears the state that is asked for.
     pub on_switch: Callback<bool>,
 }
 
-/// A button with the role of a switch.
-#[component]
-pub fn Switch(props: &SwitchProps) -> Html {
-    let onclick = use_callback((props.on_switch.clone(), props.on), |_: MouseEvent, (on_switch, on)| {
-        on_switch.emit(!on);
-    });
-    html! {
-        <button
-            type="button"
-            class="switch"
-            role="switch"
-            aria-checked={if props.on { "true" } else { "false" }}
-            disabled={props.disabled}
-            title={props.title.clone()}
-            data-test="in-switch"
-            {onclick}
-        >
-            <span class="switch-label">{ &props.label }</span>
-            <span class="switch-track" aria-hidden="true"><span class="switch-knob" /></span>
-        </button>
+impl Switch {
+    /// A button with the role of a switch.
+    pub fn draw(self) -> Html {
+        let Self { label, on, disabled, title, on_switch } = self;
+        let onclick = move |_: MouseEvent| on_switch.emit(!on);
+        html! {
+            <button
+                type="button" class="switch" role="switch" aria-checked={if on { "true" } else { "false" }}
+                {disabled} {title} data-test="in-switch" {onclick}
+            >
+                <span class="switch-label">{ label }</span>
+                <span class="switch-track" aria-hidden="true"><span class="switch-knob" /></span>
+            </button>
+        }
     }
 }

@@ -41,22 +41,13 @@ pub(super) struct StaleNoteProps {
 /// Says that what is shown is not live, and since when.
 #[component]
 pub(super) fn StaleNote(props: &StaleNoteProps) -> Html {
-    let link = use_link();
-    match link {
-        Link::Lost { since_ms, .. } if props.stored => html! { <Stale {since_ms} /> },
-        _ => html! {},
-    }
-}
-
-#[derive(Clone, PartialEq, Properties)]
-struct StaleProps {
-    since_ms: f64,
-}
-
-#[component]
-fn Stale(props: &StaleProps) -> Html {
-    use_second(true);
-    let age = age_words((browser::now_ms() - props.since_ms) / 1_000.0);
+    let lost = match use_link() {
+        Link::Lost { since_ms, .. } if props.stored => Some(since_ms),
+        _ => None,
+    };
+    use_second(lost.is_some());
+    let Some(since_ms) = lost else { return html! {} };
+    let age = age_words((browser::now_ms() - since_ms) / 1_000.0);
     html! { <p class="warning-text" data-test="stale">{ tr!("link.stale", age = age) }</p> }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod block;
 pub mod connection;
+pub mod connections;
 pub mod deck;
 pub mod help;
 pub mod monitor;

@@ -11,7 +11,7 @@ pub use self::{
     deck_id::{DeckId, NotAnId},
     rows::{AskForFrame, Row, RowStore},
     shelf::Shelf,
-    targets::{Known, TargetStore, target_of},
+    targets::{TargetStore, target_of},
     trace::{Edge, Trace},
     watch::{Watch, Watchers},
 };

@@ -90,6 +90,15 @@ impl<K: Ord, V> Shelf<K, V> {
     }
 }
 
+impl<K, V> IntoIterator for Shelf<K, V> {
+    type Item = (K, V);
+    type IntoIter = std::vec::IntoIter<(K, V)>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,7 +13,6 @@ use super::{
     shelf::Shelf,
     watch::{Watch, Watchers},
 };
-use crate::browser;
 
 /// A handle to the targets. Clones are the same store.
 #[derive(Clone, Default)]
@@ -21,42 +20,24 @@ pub struct TargetStore(Rc<Inner>);
 
 #[derive(Default)]
 struct Inner {
-    targets: RefCell<Shelf<String, Rc<Known>>>,
+    targets: RefCell<Shelf<String, Rc<TargetStatus>>>,
     watchers: Watchers,
-}
-
-/// What the relay has said about a target.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Known {
-    /// As the relay said it.
-    pub status: TargetStatus,
-    /// When, in ms of [`browser::now_ms`].
-    pub heard_ms: f64,
-}
-
-impl Known {
-    /// Seconds since something last went to or came from the target.
-    pub fn idle_s(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "ms since the relay was started")]
-        let idle_ms = self.status.idle_ms as f64;
-        (idle_ms + browser::now_ms() - self.heard_ms) / 1_000.0
-    }
-
-    /// Whether it did not answer.
-    pub fn is_down(&self) -> bool {
-        self.status.state == TargetState::Down
-    }
 }
 
 impl TargetStore {
     /// All targets, by name.
-    pub fn all(&self) -> Vec<Rc<Known>> {
+    pub fn all(&self) -> Vec<Rc<TargetStatus>> {
         self.0.targets.borrow().values().cloned().collect()
+    }
+
+    /// Those that do not answer.
+    pub fn down(&self) -> Vec<Rc<TargetStatus>> {
+        self.all().into_iter().filter(|target| target.state == TargetState::Down).collect()
     }
 
     /// What kind of device is at the end of a path's first hop, if it has said so.
     pub fn profile(&self, path: &str) -> Option<Profile> {
-        self.0.targets.borrow().get(&target_of(path)?)?.status.profile
+        self.0.targets.borrow().get(&target_of(path)?)?.profile
     }
 
     /// The relay's whole state.
@@ -80,10 +61,8 @@ impl TargetStore {
     }
 
     fn put(&self, targets: Vec<TargetStatus>) {
-        let heard_ms = browser::now_ms();
         for status in targets {
-            let known = Rc::new(Known { status, heard_ms });
-            self.0.targets.borrow_mut().insert(known.status.target.clone(), known);
+            self.0.targets.borrow_mut().insert(status.target.clone(), Rc::new(status));
         }
         self.0.watchers.wake();
     }

@@ -30,7 +30,7 @@ async fn no_page_sticks_out_of_its_window() {
                 user.see("Result", PATIENCE).await;
                 fits(&mut user, &format!("{theme}-{width}-{name}")).await;
             }
-            for page in ["Monitor", "Help"] {
+            for page in ["Monitor", "Connections", "Help"] {
                 user.click(page).await;
                 fits(&mut user, &format!("{theme}-{width}-{page}")).await;
             }

@@ -1,6 +1,7 @@
 //! Journeys through the page in headless Chromium against the real relay, with a screenshot of every stage. One
 //! binary, because each would link the whole relay again.
 
+mod connections;
 mod cyclic;
 mod deck;
 mod editor;
@@ -8,4 +9,5 @@ mod first_start;
 mod looks;
 mod monitor;
 mod reconnect;
+mod routes;
 mod write;

@@ -65,13 +65,16 @@ pub(super) fn Commands(props: &CommandsProps) -> Html {
             asked.set(None);
         })
     };
+    let switch = Switch {
+        label: "IN",
+        on: status.input,
+        disabled: obstacle.is_some() && !status.input,
+        title: if subject.is_cyclic() { tr!("run.in_cyclic") } else { tr!("run.in_once") },
+        on_switch,
+    };
     html! {
         <div class="commands">
-            <Switch
-                label={tr!("run.in")} on={status.input} {on_switch}
-                disabled={obstacle.is_some() && !status.input}
-                title={if subject.is_cyclic() { tr!("run.in_cyclic") } else { tr!("run.in_once") }}
-            />
+            { switch.draw() }
             <button type="button" class="button primary run" disabled={!can_run} onclick={on_run} data-test="run">
                 { if subject.may_write() { tr!("run.write") } else { tr!("run.run") } }
             </button>

@@ -86,7 +86,7 @@ fn inputs(subject: &Subject, status: &BlockStatus) -> Vec<Pin> {
         Pin::bool("IN", status.input),
         Pin::new("CtrlCfg", format!("TriggerType {}", config.ctrl_cfg.trigger_type)),
         Pin::new("AppCfg", format!("{} · {}/{}/{}", app.service, app.class, app.instance, app.attribute)),
-        Pin::new("TargetCfg", short(&config.target_cfg.path, 20)),
+        Pin::new("TargetCfg", short(&config.target_cfg.path, 16)),
         Pin::new("ReqData", data),
         Pin::new("ReqLength", sent),
     ]

@@ -27,6 +27,13 @@ pub(super) struct FormProps {
 pub(super) fn Form(props: &FormProps) -> Html {
     let FormProps { subject, edit } = props;
     let config = &subject.draft.config;
+    // A section that was opened for its findings stays open when they are gone.
+    let opened = use_mut_ref(|| [false; 2]);
+    let stays = |section: usize, open: bool| {
+        let mut opened = opened.borrow_mut();
+        opened[section] |= open;
+        opened[section]
+    };
     let number = |field| number_member(subject, edit, field);
     let flag = |field| flag_member(subject, edit, field);
     let text = |field: Field, text: &str, readout, placeholder, multiline| {
@@ -57,14 +64,14 @@ pub(super) fn Form(props: &FormProps) -> Html {
                 { number(Field::ReqLength) }
                 { number(Field::ResDataSize) }
             </> }) }
-            { section("CtrlCfg".into(), has_remarks(subject, &CTRL), Some(trigger_words(config.ctrl_cfg.trigger_type)), html! { <>
+            { section("CtrlCfg".into(), stays(0, has_remarks(subject, &CTRL)), Some(trigger_words(config.ctrl_cfg.trigger_type)), html! { <>
                 { number(Field::TriggerType) }
                 { flag(Field::Cancel) }
                 { number(Field::StrMode) }
                 { channel(subject, edit) }
                 { flag(Field::Resume) }
             </> }) }
-            { section(tr!("form.connection"), opens_connection(subject), Some(connection_words(subject)), html! { <>
+            { section(tr!("form.connection"), stays(1, opens_connection(subject)), Some(connection_words(subject)), html! { <>
                 { number(Field::UcmmTimeout) }
                 { number(Field::ConnMsgTimeout) }
                 { flag(Field::ConnClose) }

@@ -14,6 +14,7 @@ use crate::{
     i18n::{tr, try_text},
     notice::Notice,
     store::DeckId,
+    workbench::Workbench,
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -27,7 +28,8 @@ pub(super) struct NoticeBarProps {
 pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
     let bench = use_workbench();
     let notice = use_notice(props.id);
-    let on_dismiss = use_callback((bench, props.id), |_: MouseEvent, (bench, id)| bench.notices().clear(*id));
+    let on_dismiss =
+        use_callback((bench.clone(), props.id), |_: MouseEvent, (bench, id)| bench.notices().clear(*id));
     match notice {
         None => html! {},
         Some(Notice::Problem(problem)) => html! {
@@ -36,9 +38,7 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
                 <button type="button" class="quiet-button" onclick={on_dismiss}>{ tr!("notice.dismiss") }</button>
             </div>
         },
-        Some(Notice::Conflict(current)) => html! {
-            <Conflict id={props.id} mine={props.subject.clone()} {current} />
-        },
+        Some(Notice::Conflict(current)) => conflict(&bench, props.id, &props.subject, &current),
     }
 }
 
@@ -53,26 +53,19 @@ fn words(problem: &Problem) -> String {
     }
 }
 
-#[derive(Clone, PartialEq, Properties)]
-struct ConflictProps {
-    id: DeckId,
-    mine: Rc<Subject>,
-    current: Rc<Block>,
-}
-
 /// Both versions, member by member where they differ.
-#[component]
-fn Conflict(props: &ConflictProps) -> Html {
-    let bench = use_workbench();
-    let ConflictProps { id, mine, current } = props.clone();
-    let on_mine =
-        use_callback((bench.clone(), id, current.clone()), |_: MouseEvent, (bench, id, current)| {
-            bench.save_over(*id, current);
-        });
-    let on_theirs = use_callback((bench, id, current.clone()), |_: MouseEvent, (bench, id, current)| {
-        bench.rows().put_stored((**current).clone());
-        bench.revert(*id);
-    });
+fn conflict(bench: &Workbench, id: DeckId, mine: &Subject, current: &Rc<Block>) -> Html {
+    let on_mine = {
+        let (bench, current) = (bench.clone(), current.clone());
+        move |_: MouseEvent| bench.save_over(id, &current)
+    };
+    let on_theirs = {
+        let (bench, current) = (bench.clone(), current.clone());
+        move |_: MouseEvent| {
+            bench.rows().put_stored((*current).clone());
+            bench.revert(id);
+        }
+    };
     let rows = differences(&mine.draft.config, &current.config);
     html! {
         <div class="notice conflict" role="alert" data-test="conflict">

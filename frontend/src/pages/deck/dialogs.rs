@@ -21,161 +21,106 @@ pub(super) enum Asked {
     Delete(DeckId),
 }
 
-/// The dialog of a question. `on_answered` closes it, with an entry if one was added.
-pub(super) fn dialog(asked: Asked, on_answered: Callback<Option<DeckId>>) -> Html {
-    match asked {
-        Asked::Rename(id) => html! { <Rename {id} {on_answered} /> },
-        Asked::Copy(id) => html! { <Copy {id} {on_answered} /> },
-        Asked::Paste => html! { <Paste {on_answered} /> },
-        Asked::Delete(id) => html! { <Delete {id} {on_answered} /> },
-    }
-}
-
 #[derive(Clone, PartialEq, Properties)]
-struct OneProps {
-    id: DeckId,
-    on_answered: Callback<Option<DeckId>>,
+pub(super) struct QuestionProps {
+    pub(super) asked: Asked,
+    /// Closes it, with an entry if one was added.
+    pub(super) on_answered: Callback<Option<DeckId>>,
 }
 
-fn name(bench: &Workbench, id: DeckId) -> String {
-    bench.draft(id).map(|draft| draft.config.name).unwrap_or_default()
-}
-
-fn buttons(
-    words: AttrValue,
-    kind: &'static str,
-    test: &'static str,
-    on_answered: &Callback<Option<DeckId>>,
-) -> Html {
-    // After a copy there is nothing to cancel.
-    let leave = if test == "confirm-copy" { tr!("dialog.close") } else { tr!("dialog.cancel") };
-    html! {
-        <div class="dialog-buttons">
-            <button type="button" class="button" onclick={on_answered.reform(|_: MouseEvent| None)}>{ leave }</button>
-            <button type="submit" class={classes!("button", kind)} data-test={test}>{ words }</button>
-        </div>
-    }
-}
-
+/// The dialog of a question. One component for all: each of its own would be 1 kB of the page.
 #[component]
-fn Rename(props: &OneProps) -> Html {
+pub(super) fn Question(props: &QuestionProps) -> Html {
     let bench = use_workbench();
     let node = use_node_ref();
-    let OneProps { id, on_answered } = props.clone();
-    let old = name(&bench, id);
-    let onsubmit = {
-        let (node, on_answered) = (node.clone(), on_answered.clone());
-        Callback::from(move |event: SubmitEvent| {
-            event.prevent_default();
-            let was_unsaved = bench.is_unsaved(id);
-            let name = node.cast::<HtmlInputElement>().map(|input| input.value()).unwrap_or_default();
-            bench.edit(id, Edit::Text(Field::Name, name));
-            // Only the name is stored here: other changes wait for their own Save.
-            if !was_unsaved && bench.relay().is_online() {
-                bench.save(id);
+    let note = use_state(|| None::<AttrValue>);
+    let QuestionProps { asked, on_answered } = props.clone();
+    let body = body(asked, &bench, &node, (*note).clone());
+    let close = on_answered.reform(|_: MouseEvent| None);
+    let on_close = on_answered.reform(|()| None);
+    let onsubmit = move |event: SubmitEvent| {
+        event.prevent_default();
+        match asked {
+            Asked::Rename(id) => {
+                rename(&bench, id, node.cast::<HtmlInputElement>().map(|input| input.value()));
+                on_answered.emit(None);
             }
-            on_answered.emit(None);
-        })
-    };
-    html! {
-        <Dialog title={tr!("rename.title")} test="rename-dialog" on_close={on_answered.reform(|()| None)}>
-            <form {onsubmit}>
-                <label for="rename-name">{ tr!("rename.name") }</label>
-                <input id="rename-name" class="input" value={old} ref={node} autofocus=true maxlength="64" />
-                { buttons(tr!("rename.do"), "primary", "confirm-rename", &on_answered) }
-            </form>
-        </Dialog>
-    }
-}
-
-#[component]
-fn Delete(props: &OneProps) -> Html {
-    let bench = use_workbench();
-    let OneProps { id, on_answered } = props.clone();
-    let name = name(&bench, id);
-    let onsubmit = {
-        let on_answered = on_answered.clone();
-        Callback::from(move |event: SubmitEvent| {
-            event.prevent_default();
-            bench.delete(id);
-            on_answered.emit(None);
-        })
-    };
-    html! {
-        <Dialog title={tr!("delete.title")} test="delete-dialog" on_close={on_answered.reform(|()| None)}>
-            <form {onsubmit}>
-                <p>{ tr!("delete.text", name = name) }</p>
-                { buttons(tr!("delete.do"), "danger", "confirm-delete", &on_answered) }
-            </form>
-        </Dialog>
-    }
-}
-
-#[component]
-fn Copy(props: &OneProps) -> Html {
-    let bench = use_workbench();
-    let copied = use_state(|| None::<bool>);
-    let OneProps { id, on_answered } = props.clone();
-    let json = bench
-        .draft(id)
-        .and_then(|draft| serde_json::to_string_pretty(&draft.config).ok())
-        .unwrap_or_default();
-    let onsubmit = {
-        let (json, copied) = (json.clone(), copied.clone());
-        Callback::from(move |event: SubmitEvent| {
-            event.prevent_default();
-            let copied = copied.clone();
-            browser::copy(&json, move |done| copied.set(Some(done)));
-        })
-    };
-    html! {
-        <Dialog title={tr!("copy.title")} test="copy-dialog" on_close={on_answered.reform(|()| None)}>
-            <form {onsubmit}>
-                <textarea class="input json" rows="16" readonly=true aria-label={tr!("copy.title")} value={json} />
-                <p role="status" class="hint">
-                    { match *copied { None => tr!("copy.hint"), Some(true) => tr!("copy.done"), Some(false) => tr!("copy.refused") } }
-                </p>
-                { buttons(tr!("copy.do"), "primary", "confirm-copy", &on_answered) }
-            </form>
-        </Dialog>
-    }
-}
-
-#[derive(Clone, PartialEq, Properties)]
-struct PasteProps {
-    on_answered: Callback<Option<DeckId>>,
-}
-
-#[component]
-fn Paste(props: &PasteProps) -> Html {
-    let bench = use_workbench();
-    let node = use_node_ref();
-    let problem = use_state(|| None::<String>);
-    let on_answered = props.on_answered.clone();
-    let onsubmit = {
-        let (node, problem, on_answered) = (node.clone(), problem.clone(), on_answered.clone());
-        Callback::from(move |event: SubmitEvent| {
-            event.prevent_default();
-            let text = node.cast::<HtmlTextAreaElement>().map(|input| input.value()).unwrap_or_default();
-            match read(&text) {
-                Ok(config) => on_answered.emit(Some(bench.add(config))),
-                Err(error) => problem.set(Some(error)),
+            Asked::Delete(id) => {
+                bench.delete(id);
+                on_answered.emit(None);
             }
-        })
-    };
-    html! {
-        <Dialog title={tr!("paste.title")} test="paste-dialog" on_close={on_answered.reform(|()| None)}>
-            <form {onsubmit}>
-                <label for="paste-json">{ tr!("paste.label") }</label>
-                <textarea id="paste-json" class="input json" rows="16" spellcheck="false" ref={node} autofocus=true
-                    aria-describedby={problem.is_some().then_some("paste-finding")} />
-                if let Some(problem) = &*problem {
-                    <p id="paste-finding" class="finding error" role="alert">{ tr!("paste.unreadable", error = problem) }</p>
+            Asked::Copy(id) => {
+                let note = note.clone();
+                browser::copy(&json(&bench, id), move |done| {
+                    note.set(Some(if done { tr!("copy.done") } else { tr!("copy.refused") }));
+                });
+            }
+            Asked::Paste => {
+                let text = node.cast::<HtmlTextAreaElement>().map(|input| input.value());
+                match read(&text.unwrap_or_default()) {
+                    Ok(config) => on_answered.emit(Some(bench.add(config))),
+                    Err(error) => note.set(Some(tr!("paste.unreadable", error = error))),
                 }
-                { buttons(tr!("paste.do"), "primary", "confirm-paste", &on_answered) }
+            }
+        }
+    };
+    let (name, title, answer, kind, leave) = match asked {
+        Asked::Rename(_) => {
+            ("rename", tr!("rename.title"), tr!("rename.do"), "primary", tr!("dialog.cancel"))
+        }
+        // After a copy there is nothing to cancel.
+        Asked::Copy(_) => ("copy", tr!("copy.title"), tr!("copy.do"), "primary", tr!("dialog.close")),
+        Asked::Paste => ("paste", tr!("paste.title"), tr!("paste.do"), "primary", tr!("dialog.cancel")),
+        Asked::Delete(_) => ("delete", tr!("delete.title"), tr!("delete.do"), "danger", tr!("dialog.cancel")),
+    };
+    html! {
+        <Dialog {title} test={format!("{name}-dialog")} {on_close}>
+            <form {onsubmit}>
+                { body }
+                <div class="dialog-buttons">
+                    <button type="button" class="button" onclick={close}>{ leave }</button>
+                    <button type="submit" class={classes!("button", kind)} data-test={format!("confirm-{name}")}>{ answer }</button>
+                </div>
             </form>
         </Dialog>
     }
+}
+
+fn body(asked: Asked, bench: &Workbench, node: &NodeRef, said: Option<AttrValue>) -> Html {
+    let name = |id| bench.draft(id).map(|draft| draft.config.name).unwrap_or_default();
+    match asked {
+        Asked::Rename(id) => html! { <>
+            <label for="rename-name">{ tr!("rename.name") }</label>
+            <input id="rename-name" class="input" value={name(id)} ref={node.clone()} autofocus=true maxlength="64" />
+        </> },
+        Asked::Delete(id) => html! { <p>{ tr!("delete.text", name = name(id)) }</p> },
+        Asked::Copy(id) => html! { <>
+            <textarea class="input json" rows="16" readonly=true aria-label={tr!("copy.title")} value={json(bench, id)} />
+            <p role="status" class="hint">{ said.unwrap_or_else(|| tr!("copy.hint")) }</p>
+        </> },
+        Asked::Paste => html! { <>
+            <label for="paste-json">{ tr!("paste.label") }</label>
+            <textarea id="paste-json" class="input json" rows="16" spellcheck="false" ref={node.clone()} autofocus=true
+                aria-describedby={said.is_some().then_some("paste-finding")} />
+            if let Some(problem) = said {
+                <p id="paste-finding" class="finding error" role="alert">{ problem }</p>
+            }
+        </> },
+    }
+}
+
+fn rename(bench: &Workbench, id: DeckId, name: Option<String>) {
+    let was_unsaved = bench.is_unsaved(id);
+    bench.edit(id, Edit::Text(Field::Name, name.unwrap_or_default()));
+    // Only the name is stored here: other changes wait for their own Save.
+    if !was_unsaved && bench.relay().is_online() {
+        bench.save(id);
+    }
+}
+
+fn json(bench: &Workbench, id: DeckId) -> String {
+    let json = bench.draft(id).map(|draft| serde_json::to_string_pretty(&draft.config).unwrap_or_default());
+    json.unwrap_or_default()
 }
 
 /// A block as it was copied, with or without the id and revision that a relay gave it.

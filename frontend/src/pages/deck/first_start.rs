@@ -6,6 +6,7 @@ use yew::prelude::*;
 use crate::{
     hooks::{use_link, use_workbench},
     i18n::{rule_text, tr},
+    pages::connections::discover::Discover,
     route::{self, Route},
     workbench::{Place, Workbench},
 };
@@ -65,6 +66,8 @@ pub fn FirstStart() -> Html {
             <div class="first-or"><span>{ tr!("first.or") }</span></div>
             <button type="button" class="button" onclick={on_demo} data-test="first-demo">{ tr!("first.demo") }</button>
             <p class="hint">{ tr!("first.demo_hint") }</p>
+            <div class="first-or"><span>{ tr!("first.or") }</span></div>
+            <Discover />
         </section>
     }
 }

@@ -6,7 +6,7 @@ use cipdeck_shared::config::MsgCipGeneric;
 use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
-use super::dialogs::{Asked, dialog};
+use super::dialogs::{Asked, Question};
 use crate::{
     browser,
     hooks::{use_draft, use_row, use_workbench},
@@ -83,7 +83,7 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
                 }) }
             </ul>
             if let Some(asked) = *asked {
-                { dialog(asked, on_answered) }
+                <Question {asked} {on_answered} />
             }
         </aside>
     }

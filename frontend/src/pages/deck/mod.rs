@@ -13,7 +13,7 @@ use crate::{
     pages::block::BlockPane,
     route::{self, Redirect, Route},
     store::DeckId,
-    workbench::Gone,
+    workbench::{Gone, Workbench},
 };
 
 /// What is chosen.
@@ -72,20 +72,19 @@ fn Chosen(props: &ChosenProps) -> Html {
         None if bench.relay().is_undecided() => {
             html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> }
         }
-        None => html! { <Missing {id} /> },
+        None => missing(&bench, id),
     }
 }
 
 /// An entry that is not there; what was changed in it can be kept.
-#[component]
-fn Missing(props: &ChosenProps) -> Html {
-    let bench = use_workbench();
-    let has_draft = bench.drafts().draft(props.id).is_some();
-    let on_rescue = use_callback((bench, props.id), |_: MouseEvent, (bench, id)| {
-        if let Some(id) = bench.rescue(*id) {
+fn missing(bench: &Workbench, id: DeckId) -> Html {
+    let has_draft = bench.drafts().draft(id).is_some();
+    let bench = bench.clone();
+    let on_rescue = move |_: MouseEvent| {
+        if let Some(id) = bench.rescue(id) {
             route::go(Route::Block(id));
         }
-    });
+    };
     html! {
         <div class="empty">
             <h1>{ tr!("deck.gone_title") }</h1>

@@ -11,10 +11,10 @@ use yew::prelude::*;
 use self::{row::MonitorRow, summary::Summary};
 use crate::{
     browser,
-    hooks::{use_ids, use_title, use_workbench},
+    hooks::{use_ids, use_targets, use_title, use_workbench},
     i18n::tr,
     kit::WindowTable,
-    pages::connection::StaleNote,
+    pages::{connection::StaleNote, connections::down::Down},
     store::{DeckId, RowStore},
 };
 
@@ -35,8 +35,11 @@ pub fn MonitorPage() -> Html {
         let rows = bench.rows().clone();
         move |(ids, filter)| found(&rows, ids, filter)
     });
-    let row = use_callback((), |(index, id): (usize, DeckId), ()| {
-        html! { <MonitorRow key={id.to_string()} {index} {id} /> }
+    use_targets();
+    let down = bench.relay().targets().down();
+    let down: Rc<[AttrValue]> = down.iter().map(|target| target.target.clone().into()).collect();
+    let row = use_callback(down, |(index, id): (usize, DeckId), down| {
+        html! { <MonitorRow key={id.to_string()} {index} {id} down={down.clone()} /> }
     });
     let heading = |class: &'static str, words: AttrValue| html! { <th scope="col" {class}>{ words }</th> };
     let header = html! { <>
@@ -60,6 +63,7 @@ pub fn MonitorPage() -> Html {
                 />
             </div>
             <StaleNote />
+            <Down />
             if shown.is_empty() {
                 <p class="empty">{ tr!("monitor.empty") }</p>
             } else {

@@ -1,15 +1,18 @@
 //! One block on one line. It knows its id; everything else comes from the store.
 
+use std::rc::Rc;
+
 use cipdeck_shared::config::space_hex;
 use yew::prelude::*;
 
 use crate::{
     browser,
     hooks::{use_row, use_second},
+    i18n::tr,
     kit::state_mark,
     pages::block::{age_words, decode, duration, error_words},
     route::{Route, link},
-    store::{DeckId, Row},
+    store::{DeckId, Row, target_of},
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -17,6 +20,8 @@ pub(super) struct MonitorRowProps {
     /// `aria-rowindex`
     pub(super) index: usize,
     pub(super) id: DeckId,
+    /// Targets that do not answer: a message above the table says why.
+    pub(super) down: Rc<[AttrValue]>,
 }
 
 /// State, name, target, value, age, runs, reply time, error.
@@ -27,7 +32,13 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
     let Some(row) = row else { return html! {} };
     let status = &row.status;
     let reply = status.reply_us.map(duration).unwrap_or_default();
-    let error = if status.status.error { error_words(&status.status) } else { String::new() };
+    let target = target_of(&row.config.target_cfg.path).unwrap_or_default();
+    let told_above = status.status.error_id != REFUSED && props.down.iter().any(|down| **down == *target);
+    let error = match (status.status.error, told_above) {
+        (false, _) => String::new(),
+        (true, true) => tr!("monitor.down", code = status.status.error_id).to_string(),
+        (true, false) => error_words(&status.status),
+    };
     let age = status.last.as_ref().and_then(|last| browser::age_s(&last.at)).map(age_words);
     html! {
         <tr aria-rowindex={props.index.to_string()} data-test="monitor-row" data-block={props.id.to_string()}>
@@ -40,10 +51,13 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
             <td class="col-age">{ age.unwrap_or_default() }</td>
             <td class="col-runs">{ status.runs }</td>
             <td class="col-reply">{ reply }</td>
-            <td class="col-error" title={error.clone()}>{ error }</td>
+            <td class={classes!("col-error", told_above.then_some("quiet"))} title={error.clone()}>{ error }</td>
         </tr>
     }
 }
+
+/// `ErrorID` of a message that a device has answered.
+const REFUSED: u16 = 224;
 
 /// The newest good value on one line.
 fn value(row: &Row) -> String {

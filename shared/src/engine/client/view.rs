@@ -48,13 +48,14 @@ impl Client {
     pub(in crate::engine) fn connections_in_use(&self) -> usize {
         let opening = self.outstanding.as_ref().is_some_and(|out| matches!(out.what, What::Open(..)));
         let waiting = self.queue.iter().skip(usize::from(opening));
-        let mut missing: Vec<_> = waiting
-            .filter(|job| job.plan.connection().is_some())
-            .map(|job| job.plan.routed(self.profile_for(&job.plan)).route())
-            .filter(|route| self.connections.iter().all(|connection| connection.route != **route))
-            .collect();
-        missing.sort_by_key(|route| route.bytes());
-        missing.dedup();
+        let mut missing = Vec::new();
+        for job in waiting.filter(|job| job.plan.connection().is_some()) {
+            let route = job.plan.routed(self.profile_for(&job.plan)).route();
+            let is_open = self.connections.iter().any(|connection| connection.route == *route);
+            if !is_open && !missing.contains(&route) {
+                missing.push(route);
+            }
+        }
         let closing = |open: &&Connection| open.close_wanted && !self.is_wanted(&open.route);
         let ending = self.connections.iter().filter(closing).count();
         self.connections.len() - ending + missing.len() + usize::from(opening)

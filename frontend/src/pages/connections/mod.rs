@@ -1,0 +1,42 @@
+//! Who holds a buffer, who waits and why; the targets with their sessions and connections; who is on the network.
+
+mod buffers;
+pub(crate) mod discover;
+pub(crate) mod down;
+mod queue;
+mod targets;
+
+use yew::prelude::*;
+
+use self::{
+    buffers::channels,
+    discover::Discover,
+    down::Down,
+    queue::{Queue, Seats},
+    targets::targets,
+};
+use super::connection::StaleNote;
+use crate::{
+    hooks::{use_rows_now_and_then, use_title, use_workbench},
+    i18n::tr,
+};
+
+/// Channels, targets, discovery.
+#[component]
+pub fn ConnectionsPage() -> Html {
+    let bench = use_workbench();
+    use_title(&tr!("connections.title"));
+    use_rows_now_and_then();
+    let seats = use_mut_ref(Seats::default);
+    let queue = Queue::of(bench.rows(), &mut seats.borrow_mut());
+    html! {
+        <section class="connections">
+            <h1>{ tr!("connections.title") }</h1>
+            <StaleNote />
+            <Discover />
+            <Down />
+            { channels(&queue) }
+            { targets(&bench) }
+        </section>
+    }
+}
