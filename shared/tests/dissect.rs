@@ -225,6 +225,14 @@ fn a_router_that_refuses_is_told_from_the_target() {
     let service = text_of(&node, "service").unwrap();
     assert!(service.contains("Unconnected_Send") && service.contains("a router"), "{service}");
     assert_eq!(text_of(&node, "remaining path size"), Some("1 words, 2 bytes of the path were left"));
+    // 01/0113 and the three numbers: no connection for the request.
+    let node = dissect::reply(&hex!("D4 00 01 01 13 01 0100 3713 EFBEADDE 00 00"), Some(&PRODUCT_NAME));
+    assert!(!node.is_broken(), "{node}");
+    let service = text_of(&node, "service").unwrap();
+    assert!(
+        service.contains("Forward_Open") && service.contains("the connection that the request needed"),
+        "{service}"
+    );
     // Logix' Read_Tag_Fragmented has the same number.
     let tag = hex!("52 03 91 04 54 41 47 31 01 00 00 00 00 00");
     let node = dissect::reply(&hex!("D2 00 00 00 C4 00 2A 00 00 00"), Some(&tag));

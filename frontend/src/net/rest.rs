@@ -1,7 +1,7 @@
 //! REST: what is asked once and answered once.
 
 use cipdeck_shared::{
-    api::{DiscoverRequest, Discovered, ExchangeView, Health, Problem, ProblemCode},
+    api::{DiscoverRequest, Discovered, ExchangeView, Health, Problem, ProblemCode, TargetStatus},
     config::{Block, BlockId, MsgCipGeneric},
 };
 use gloo_net::http::{Request, RequestBuilder, Response};
@@ -51,6 +51,11 @@ pub fn capture(id: BlockId) -> String {
 /// Who is on the network.
 pub async fn discover(request: &DiscoverRequest) -> Answered<Discovered> {
     read(send_json(Request::post(&address("discover")), request).await?).await
+}
+
+/// All targets, with what counts up in them as it is now.
+pub async fn targets() -> Answered<Vec<TargetStatus>> {
+    read(send(Request::get(&address("targets"))).await?).await
 }
 
 /// A problem that the relay did not report: it could not be reached, or did not speak our language.

@@ -55,6 +55,14 @@ impl TargetStore {
         self.put(targets);
     }
 
+    /// What counts up in the targets: the WebSocket tells other changes only.
+    pub fn refresh(&self, targets: Vec<TargetStatus>) {
+        let known = self.0.targets.borrow();
+        let targets = targets.into_iter().filter(|target| known.get(&target.target).is_some()).collect();
+        drop(known);
+        self.put(targets);
+    }
+
     /// Wakes when any target looks different.
     pub fn watch(&self, wake: Callback<()>) -> Watch {
         self.0.watchers.watch(wake)

@@ -60,6 +60,18 @@ pub(super) fn answers(about: &About, service: ServiceCode, refused: bool, length
     }
 }
 
+/// What it means that the Connection Manager has answered although something else was asked.
+pub(super) fn answers_instead(about: &About, service: ServiceCode) -> Option<&'static str> {
+    let asked = about.service.filter(|asked| *asked != service);
+    match (asked?, service) {
+        (_, ServiceCode::UnconnectedSend) => Some("Not the target has answered, but a router."),
+        (_, ServiceCode::ForwardOpen | ServiceCode::LargeForwardOpen) => {
+            Some("This is about the connection that the request needed.")
+        }
+        _ => None,
+    }
+}
+
 /// Adds the data of a reply.
 pub(super) fn reply(tree: &mut Tree<'_>, service: ServiceCode, status: GeneralStatus) -> Option<()> {
     if status != GeneralStatus::Success {

@@ -66,9 +66,9 @@ fn fill_reply(tree: &mut Tree<'_>, about: &About) -> Option<()> {
         if code == service.0 {
             return format!("{code:#04x}: not a reply, bit 7 is not set");
         }
-        if refuses_on_the_way(about, service) {
+        if let Some(who) = connection_manager::answers_instead(about, service) {
             let name = coded(service, table::service(ClassCode::ConnectionManager.0, service));
-            return format!("{code:#04x}, reply to {name} Not the target has answered, but a router.");
+            return format!("{code:#04x}, reply to {name} {who}");
         }
         let answers = format!("{code:#04x}, reply to {}", service_text(about, service));
         match about.service {
@@ -94,11 +94,6 @@ fn fill_reply(tree: &mut Tree<'_>, about: &About) -> Option<()> {
         return connection_manager::reply(tree, service, status);
     }
     data(tree, layout_of_reply(about, service, status))
-}
-
-/// Somebody else was asked, and the Connection Manager of a router answers.
-fn refuses_on_the_way(about: &About, service: ServiceCode) -> bool {
-    about.service.is_some_and(|asked| asked != service) && service == ServiceCode::UnconnectedSend
 }
 
 fn service_text(about: &About, service: ServiceCode) -> String {

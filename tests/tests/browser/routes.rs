@@ -64,8 +64,22 @@ async fn a_connected_read_opens_a_connection_that_the_page_shows() {
     user.click("Connections").await;
     let target = user.find("the target", &part("target"), PATIENCE).await;
     assert!(target.contains("class 3 connection along 1,0"), "{target}");
+    assert!(target.contains("requests: 1"), "{target}");
     assert!(target.contains("answers with the connection id of the request"), "{target}");
     user.shot("connections").await;
+
+    user.click("Deck").await;
+    user.click("block").await;
+    user.click_at(&field("ConnClose"), "ConnClose").await;
+    user.click("Run").await;
+    let closed = format!("{}//*[@data-bit='CIPCONN' and @data-on='true']", part("status-bits"));
+    user.find("that the connection was closed", &closed, PATIENCE).await;
+    user.shot("closed").await;
+    user.fill("Path", &format!("4,{},2,192.168.1.10,1,9", simulator.address)).await;
+    user.click("Run").await;
+    let cause = user.find("what happened", &part("cause"), PATIENCE).await;
+    assert!(cause.contains("The connection could not be opened."), "{cause}");
+    user.shot("not-opened").await;
 
     user.click("Deck").await;
     user.click("get-1-1-7").await;

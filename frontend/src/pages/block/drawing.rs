@@ -97,7 +97,7 @@ fn outputs(status: &BlockStatus) -> Vec<Pin> {
     let data = read_hex(&status.res_data).unwrap_or_default();
     vec![
         Pin::bool("Q", status.q),
-        Pin::new("StatusBits", bits(codes.status_bits)),
+        Pin::new("StatusBits", short(&bits(codes.status_bits), 16)),
         Pin::new("ErrorID", codes.error_id.to_string()),
         Pin::new("SubErrorID", codes.sub_error_id.to_string()),
         Pin::new("ResLength", status.res_length.to_string()),
