@@ -18,6 +18,37 @@ pub fn product_name(path: &str) -> Value {
     get(path, 1, 1, 7)
 }
 
+/// Digits of the number of [`numbered`].
+const DIGITS: u32 = 8;
+
+/// Reads a list of Identity attributes, Get_Attribute_List, that is a number below 6561: the answer names its request.
+pub fn numbered(path: &str, number: u32) -> Value {
+    let digits = (0..DIGITS).map(|place| number / 3_u32.pow(place) % 3 + 1);
+    let list = digits.fold(String::new(), |list, attribute| list + format!("{attribute:02x}00").as_str());
+    let mut block = get(path, 1, 1, 0);
+    block["name"] = json!(format!("number-{number}"));
+    block["AppCfg"]["Service"] = json!(3);
+    block["ReqData"] = json!(format!("{DIGITS:02x}00{list}"));
+    block
+}
+
+/// The number of the request that this `ResData` answers, if it is of [`numbered`].
+pub fn number_of(data: &Value) -> Option<u32> {
+    // UINT count, then attribute, status and value: UINTs, all of them.
+    let text = data.as_str()?.strip_prefix(&format!("{DIGITS:02x}00"))?;
+    (0..DIGITS).try_rfold(0, |number, place| {
+        let at = 12 * usize::try_from(place).ok()?;
+        let attribute: u32 = text.get(at..at + 2)?.parse().ok()?;
+        Some(number * 3 + attribute.checked_sub(1)?)
+    })
+}
+
+/// Over a class 3 connection.
+#[must_use]
+pub fn connected(block: Value) -> Value {
+    with(with(block, "/TargetCfg/CipConnMode", 1), "/Profile", "generic")
+}
+
 /// Set_Attribute_Single with data as hexadecimal text.
 pub fn set(path: &str, class: u32, instance: u32, attribute: u32, data: &str) -> Value {
     let mut block = get(path, class, instance, attribute);

@@ -9,6 +9,8 @@ pub const REGISTER_SESSION: u16 = 0x65;
 pub const UNREGISTER_SESSION: u16 = 0x66;
 /// SendRRData.
 pub const SEND_RR_DATA: u16 = 0x6F;
+/// SendUnitData.
+pub const SEND_UNIT_DATA: u16 = 0x70;
 /// Bytes of the encapsulation header.
 pub const HEADER: usize = 24;
 

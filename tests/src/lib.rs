@@ -12,6 +12,7 @@ mod chromium;
 pub mod command;
 pub mod fake_plc;
 pub mod frame;
+pub mod gateway;
 pub mod measure;
 pub mod peers;
 pub mod process;

@@ -5,9 +5,19 @@ use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
 /// Asks again and again until `probe` gives a value; fails the test when `limit` has passed.
-pub async fn eventually<T>(what: &str, limit: Duration, mut probe: impl AsyncFnMut() -> Option<T>) -> T {
+pub async fn eventually<T>(what: &str, limit: Duration, probe: impl AsyncFnMut() -> Option<T>) -> T {
+    eventually_every(Duration::from_millis(10), what, limit, probe).await
+}
+
+/// [`eventually`], for what takes long: it is asked less often.
+pub async fn eventually_every<T>(
+    pace: Duration,
+    what: &str,
+    limit: Duration,
+    mut probe: impl AsyncFnMut() -> Option<T>,
+) -> T {
     let deadline = Instant::now() + limit;
-    let mut ticks = interval(Duration::from_millis(10));
+    let mut ticks = interval(pace);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         ticks.tick().await;

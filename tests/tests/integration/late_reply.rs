@@ -3,7 +3,9 @@
 use std::sync::{Arc, Mutex};
 
 use cipdeck_tests::block::{self, with};
+use cipdeck_tests::command::Service;
 use cipdeck_tests::fake_plc::{self, Act, FakePlc, Request};
+use cipdeck_tests::gateway::Gateway;
 use cipdeck_tests::relay::Relay;
 use cipdeck_tests::{PATIENCE, frame};
 use serde_json::{Value, json};
@@ -87,6 +89,43 @@ async fn every_request_has_a_context_of_its_own() {
     contexts.sort_unstable();
     contexts.dedup();
     assert_eq!(contexts.len(), all, "{contexts:?}");
+}
+
+#[tokio::test]
+async fn a_reply_that_a_gateway_holds_back_answers_none_of_the_next_hundred_requests() {
+    after_a_held_reply(|block| block).await;
+}
+
+#[tokio::test]
+async fn a_connected_reply_that_a_gateway_holds_back_answers_none_of_the_next_hundred_requests() {
+    after_a_held_reply(block::connected).await;
+}
+
+/// The first reply comes before each of the next hundred, and so does the one before; all requests differ.
+async fn after_a_held_reply(way: impl Fn(Value) -> Value) {
+    let device = Service::simulate("127.0.0.1:0", &[]).await;
+    let gateway = Gateway::start(&device.address, 1).await;
+    let relay = Relay::start().await;
+    let mut viewer = relay.viewer().await;
+    let mut wrong = Vec::new();
+    for number in 0..=100 {
+        let mut block = way(block::numbered(&gateway.path(), number));
+        if number == 0 {
+            block = with(with(block, "/TargetCfg/UcmmTimeout", 300), "/TargetCfg/ConnMsgTimeout", 800);
+        }
+        let id = relay.rest.create(&block).await;
+        let status = viewer.run(&id).await;
+        let ids = (&status["Status"]["ErrorID"], &status["Status"]["SubErrorID"]);
+        if number == 0 {
+            assert_eq!(ids, (&json!(55), &json!(115)), "{status}");
+        } else {
+            assert_eq!(ids, (&json!(0), &json!(0)), "{status}");
+            wrong.extend(Some(status).filter(|status| block::number_of(&status["ResData"]) != Some(number)));
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong values: {wrong:?}", wrong.len());
+    let dropped = relay.rest.get("targets").await.body[0]["dropped"].as_u64();
+    assert_eq!(dropped, Some(199), "100 times the late one, 99 times the former one");
 }
 
 /// Silent at first; the second request is answered with the reply of the first, with its session and context, and
