@@ -4,10 +4,11 @@ use alloc::string::{String, ToString};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::{Channel, Target};
+use crate::config::Channel;
 use crate::plan::{Finding, MessagePlan, Severity};
 
 use super::block::{BlockView, Input, MsgBlock};
+use super::client::ClientId;
 use super::event::Exchange;
 use super::failure::Failure;
 use super::status::StatusBits;
@@ -39,10 +40,10 @@ pub(super) struct Entry {
 pub(super) struct Active {
     pub(super) shot: u64,
     pub(super) channel: Channel,
-    pub(super) target: Target,
+    /// Who sends it, once it holds a buffer.
+    pub(super) client: Option<ClientId>,
     pub(super) revision: u64,
     pub(super) plan: Arc<MessagePlan>,
-    pub(super) granted: bool,
     /// What has gone over the wire so far.
     pub(super) exchange: Exchange,
 }

@@ -11,7 +11,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use crate::config::{BlockId, Profile};
+use crate::config::{BlockId, Profile, Target};
 use crate::plan::MessagePlan;
 use crate::wire::{ConnectedMessage, SenderContext, UnconnectedMessage};
 
@@ -61,8 +61,13 @@ pub(super) struct Context<'a> {
     pub(super) out: &'a mut VecDeque<Output>,
 }
 
-#[derive(Debug, Default)]
+/// A client's name inside the engine: shorter to compare than its target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ClientId(pub(super) u64);
+
+#[derive(Debug)]
 pub(super) struct Client {
+    target: Target,
     link: Link,
     queue: VecDeque<Job>,
     /// The block and shot whose permission has been asked for.
@@ -153,6 +158,38 @@ impl What {
 }
 
 impl Client {
+    /// Without a connection.
+    pub(super) fn new(target: Target) -> Self {
+        Self {
+            target,
+            link: Link::None,
+            queue: VecDeque::new(),
+            asking: None,
+            outstanding: None,
+            connections: Vec::new(),
+            lost: VecDeque::new(),
+            transmit: Vec::new(),
+            next_context: 0,
+            failures: 0,
+            retry_at: None,
+            last_used: Instant::ZERO,
+            last_message: Instant::ZERO,
+            controller: false,
+            ending: false,
+            keep_alive: None,
+            known: Known::default(),
+            error: None,
+            dropped: 0,
+            changed: false,
+            armed: None,
+        }
+    }
+
+    /// Where its messages go.
+    pub(super) const fn target(&self) -> &Target {
+        &self.target
+    }
+
     pub(super) fn submit(&mut self, job: Job, cx: &mut Context<'_>) {
         (self.last_used, self.last_message) = (cx.now, cx.now);
         self.ending = false;

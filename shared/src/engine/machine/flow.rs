@@ -1,6 +1,7 @@
 //! From a trigger to DN or ER: one step of one block, and everything that follows from it.
 
 use alloc::boxed::Box;
+use alloc::collections::BTreeSet;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -37,9 +38,8 @@ impl Engine {
     pub(super) fn cycle(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         let target = entry.plan.as_ref().ok().map(|plan| plan.target());
-        if let Some(until) =
-            target.and_then(|target| self.clients.get(target)).and_then(|client| client.retry_at(now))
-        {
+        let client = target.and_then(|target| self.names.get(target)).and_then(|id| self.clients.get(id));
+        if let Some(until) = client.and_then(|client| client.retry_at(now)) {
             entry.trigger.hold_back(until);
         }
         if entry.trigger.take(now) {
@@ -51,6 +51,7 @@ impl Engine {
     pub(super) fn step(&mut self, block: BlockId, input: Input, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         let step = entry.step(input, now);
+        arm(&mut self.timers, block, entry);
         if step.changed {
             self.events.push_back(Event::Changed { block, edge: step.edge });
         }
@@ -59,7 +60,6 @@ impl Engine {
             Some(Effect::Release) => self.release(block, now),
             None => {}
         }
-        self.rearm(block);
     }
 
     fn enqueue(&mut self, block: BlockId, now: Instant) {
@@ -76,10 +76,9 @@ impl Engine {
         entry.active = Some(Active {
             shot: self.next_shot,
             channel,
-            target: plan.target().clone(),
+            client: None,
             revision: entry.revision,
             plan,
-            granted: false,
             exchange: Exchange { request: Arc::clone(&entry.request), ..Exchange::default() },
         });
         self.buffers(channel).enqueue(block);
@@ -94,12 +93,13 @@ impl Engine {
     fn release(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         entry.trigger.ended(now);
+        arm(&mut self.timers, block, entry);
         let view = Box::new(entry.view());
         let silence = view.cause.clone().filter(|cause| cause.what == CauseKind::Timeout);
         let run_once = core::mem::take(&mut entry.run_once);
         let mut active = entry.active.take();
         let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
-        let changed_target = active.as_ref().is_some_and(|active| planned != Some(&active.target));
+        let changed_target = active.as_ref().is_some_and(|active| planned != Some(active.plan.target()));
         let shot = active.as_ref().map_or(self.next_shot, |active| active.shot);
         let exchange =
             Box::new(active.as_mut().map(|active| core::mem::take(&mut active.exchange)).unwrap_or_default());
@@ -109,10 +109,12 @@ impl Engine {
         }
         if let Some(active) = active {
             self.buffers(active.channel).release(block);
-            self.client(&active.target, now, |client, cx| client.withdraw(block, silence.as_ref(), cx));
+            if let Some(id) = active.client {
+                self.client(id, now, |client, cx| client.withdraw(block, silence.as_ref(), cx));
+            }
             self.grant(active.channel, now);
             if changed_target {
-                self.retire(&active.target, now);
+                self.retire(active.plan.target(), now);
             }
         }
     }
@@ -133,27 +135,27 @@ impl Engine {
     }
 
     fn submit(&mut self, block: BlockId, now: Instant) {
+        let Some(active) = self.blocks.get(&block).and_then(|entry| entry.active.as_ref()) else { return };
+        let (plan, channel) = (Arc::clone(&active.plan), active.channel);
+        let id = self.client_of(plan.target());
         let Some(active) = self.blocks.get_mut(&block).and_then(|entry| entry.active.as_mut()) else {
             return;
         };
-        active.granted = true;
-        let (target, channel) = (active.target.clone(), active.channel);
+        active.client = Some(id);
         let job = Job {
             block,
             shot: active.shot,
             revision: active.revision,
-            plan: Arc::clone(&active.plan),
+            plan: Arc::clone(&plan),
             resent: false,
         };
-        let plan = Arc::clone(&job.plan);
         if channel != Channel::Monitor
-            && !(self.session_for_controller(&target, now) && self.connection_for_controller(&plan, now))
+            && !(self.session_for_controller(id, now) && self.connection_for_controller(id, &plan, now))
         {
             self.step(block, Input::BufferGranted, now);
             return self.step(block, Input::Failed(Failure::Limit), now);
         }
-        self.clients.entry(target.clone()).or_default();
-        self.client(&target, now, |client, cx| {
+        self.client(id, now, |client, cx| {
             client.controller |= channel != Channel::Monitor;
             client.submit(job, cx);
         });
@@ -173,8 +175,8 @@ impl Engine {
 
     pub(super) fn position(&self, block: BlockId, entry: &Entry) -> usize {
         match &entry.active {
-            Some(active) if active.granted => {
-                self.clients.get(&active.target).map_or(0, |client| client.position(block))
+            Some(Active { client: Some(id), .. }) => {
+                self.clients.get(id).map_or(0, |client| client.position(block))
             }
             Some(active) => {
                 let index = active.channel.of_controller();
@@ -191,12 +193,17 @@ impl Engine {
     }
 
     pub(super) fn rearm(&mut self, block: BlockId) {
-        let Some(entry) = self.blocks.get_mut(&block) else { return };
-        // One that is too early does no harm: most messages end long before their time.
-        let due = entry.due().filter(|due| entry.wake.is_none_or(|wake| *due < wake));
-        if let Some(due) = due {
-            entry.wake.replace(due).map(|old| self.timers.remove(&(old, block)));
-            self.timers.insert((due, block));
+        if let Some(entry) = self.blocks.get_mut(&block) {
+            arm(&mut self.timers, block, entry);
         }
+    }
+}
+
+/// Sets the block's timer. One that is too early does no harm: most messages end long before their time.
+fn arm(timers: &mut BTreeSet<(Instant, BlockId)>, block: BlockId, entry: &mut Entry) {
+    let due = entry.due().filter(|due| entry.wake.is_none_or(|wake| *due < wake));
+    if let Some(due) = due {
+        entry.wake.replace(due).map(|old| timers.remove(&(old, block)));
+        timers.insert((due, block));
     }
 }

@@ -12,7 +12,7 @@ use crate::plan::{Finding, MessagePlan};
 
 use crate::engine::block::{BlockView, Input};
 use crate::engine::channel::Buffers;
-use crate::engine::client::{Client, Output};
+use crate::engine::client::{Client, ClientId, Output};
 use crate::engine::connection::Originator;
 use crate::engine::entry::{Entry, Invalid};
 use crate::engine::event::{Event, LinkId, Wants};
@@ -26,17 +26,20 @@ pub struct Engine {
     blocks: BTreeMap<BlockId, Entry>,
     controllers: [Buffers; Channel::CONTROLLERS],
     monitor: Buffers,
-    clients: BTreeMap<Target, Client>,
-    links: BTreeMap<LinkId, Target>,
+    clients: BTreeMap<ClientId, Client>,
+    /// Each target has one client.
+    names: BTreeMap<Target, ClientId>,
+    links: BTreeMap<LinkId, ClientId>,
     /// When blocks have to be looked at; each is here once at most, perhaps too early.
     timers: BTreeSet<(Instant, BlockId)>,
     /// When clients have something to do without a block; each is here once at most, perhaps too early.
-    housekeeping: BTreeSet<(Instant, Target)>,
+    housekeeping: BTreeSet<(Instant, ClientId)>,
     originator: Originator,
     events: VecDeque<Event>,
     /// What a client wants done: kept so that its memory is used again.
     outputs: VecDeque<Output>,
     next_link: u64,
+    next_client: u64,
     next_shot: u64,
 }
 
@@ -70,6 +73,7 @@ impl Engine {
             controllers: [const { Buffers::controller() }; Channel::CONTROLLERS],
             monitor: Buffers::monitor(),
             clients: BTreeMap::new(),
+            names: BTreeMap::new(),
             links: BTreeMap::new(),
             timers: BTreeSet::new(),
             housekeeping: BTreeSet::new(),
@@ -77,6 +81,7 @@ impl Engine {
             events: VecDeque::new(),
             outputs: VecDeque::new(),
             next_link: 0,
+            next_client: 0,
             next_shot: 0,
         }
     }
@@ -172,9 +177,9 @@ impl Engine {
             let _ = self.set_in(block, false, now);
             let _ = self.cancel(block, now);
         }
-        let targets: Vec<_> = self.clients.keys().cloned().collect();
-        for target in targets {
-            self.client(&target, now, Client::close);
+        let clients: Vec<_> = self.clients.keys().copied().collect();
+        for id in clients {
+            self.client(id, now, Client::close);
         }
     }
 
@@ -192,8 +197,8 @@ impl Engine {
     /// The target closed the TCP connection, or it broke.
     pub fn closed(&mut self, link: LinkId, now: Instant) {
         self.link(link, now, Client::closed);
-        if let Some(target) = self.links.remove(&link) {
-            self.retire(&target, now);
+        if let Some(id) = self.links.remove(&link) {
+            self.retire_client(id, now);
         }
     }
 
@@ -231,12 +236,12 @@ impl Engine {
             self.rearm(block);
         }
         while self.housekeeping.first().is_some_and(|(at, _)| *at <= now) {
-            let Some((_, target)) = self.housekeeping.pop_first() else { break };
-            if let Some(client) = self.clients.get_mut(&target) {
+            let Some((_, id)) = self.housekeeping.pop_first() else { break };
+            if let Some(client) = self.clients.get_mut(&id) {
                 client.armed = None;
             }
-            self.client(&target, now, Client::handle_timeout);
-            self.retire(&target, now);
+            self.client(id, now, Client::handle_timeout);
+            self.retire_client(id, now);
         }
     }
 
@@ -269,12 +274,12 @@ impl Engine {
 
     /// All targets that blocks have been triggered for, and how they look.
     pub fn targets(&self) -> impl Iterator<Item = (&Target, TargetView)> {
-        self.clients.iter().map(|(target, client)| (target, client.view()))
+        self.clients.values().map(|client| (client.target(), client.view()))
     }
 
     /// Frames from a target that answered nothing: late, or not meant for us.
     pub fn dropped_frames(&self, target: &Target) -> u64 {
-        self.clients.get(target).map_or(0, Client::dropped)
+        self.names.get(target).and_then(|id| self.clients.get(id)).map_or(0, Client::dropped)
     }
 }
 

@@ -4,7 +4,7 @@ use alloc::boxed::Box;
 
 use crate::config::{BlockId, Target};
 use crate::engine::channel::{CONTROLLER_CONNECTIONS, CONTROLLER_SESSIONS};
-use crate::engine::client::{Client, Context, Output};
+use crate::engine::client::{Client, ClientId, Context, Output};
 use crate::engine::event::{Event, Exchange, LinkId};
 use crate::engine::time::Instant;
 use crate::plan::MessagePlan;
@@ -13,8 +13,8 @@ use super::Engine;
 
 impl Engine {
     /// Whether the controller may have a session with this target; an idle one is given up if need be.
-    pub(super) fn session_for_controller(&mut self, target: &Target, now: Instant) -> bool {
-        if self.clients.get(target).is_some_and(Client::counts_for_controller) {
+    pub(super) fn session_for_controller(&mut self, client: ClientId, now: Instant) -> bool {
+        if self.clients.get(&client).is_some_and(Client::counts_for_controller) {
             return true;
         }
         if self.clients.values().filter(|client| client.counts_for_controller()).count() < CONTROLLER_SESSIONS
@@ -23,30 +23,34 @@ impl Engine {
         }
         let idle =
             self.clients.iter().filter(|(_, client)| client.counts_for_controller() && client.is_idle());
-        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(target, _)| target.clone());
-        oldest.is_some_and(|target| {
-            self.client(&target, now, Client::close);
+        let oldest = idle.min_by_key(|(_, client)| client.last_used()).map(|(id, _)| *id);
+        oldest.is_some_and(|oldest| {
+            self.client(oldest, now, Client::close);
             true
         })
     }
 
     /// Whether the controller may have a class 3 connection for this message; idle ones are given up if need be.
-    pub(super) fn connection_for_controller(&mut self, plan: &MessagePlan, now: Instant) -> bool {
+    pub(super) fn connection_for_controller(
+        &mut self,
+        client: ClientId,
+        plan: &MessagePlan,
+        now: Instant,
+    ) -> bool {
         if plan.connection().is_none() {
             return true;
         }
-        if self.clients.get(plan.target()).is_some_and(|client| client.has_connection_for(plan)) {
+        if self.clients.get(&client).is_some_and(|client| client.has_connection_for(plan)) {
             return true;
         }
         let counted = || self.clients.iter().filter(|(_, client)| client.counts_for_controller());
         if counted().map(|(_, client)| client.connections_in_use()).sum::<usize>() < CONTROLLER_CONNECTIONS {
             return true;
         }
-        let spare = counted().filter_map(|(target, client)| {
-            client.spare_connection().map(|(since, serial)| (since, target.clone(), serial))
-        });
-        spare.min().is_some_and(|(_, target, serial)| {
-            self.client(&target, now, |client, cx| client.give_up_connection(serial, cx));
+        let spare = counted()
+            .filter_map(|(id, client)| client.spare_connection().map(|(since, serial)| (since, *id, serial)));
+        spare.min().is_some_and(|(_, id, serial)| {
+            self.client(id, now, |client, cx| client.give_up_connection(serial, cx));
             true
         })
     }
@@ -55,14 +59,21 @@ impl Engine {
     pub(super) fn retire(&mut self, target: &Target, now: Instant) {
         let needed = self.blocks.values().any(|entry| {
             let planned = entry.plan.as_ref().ok().map(|plan| plan.target());
-            planned == Some(target) || entry.active.as_ref().is_some_and(|active| active.target == *target)
+            planned == Some(target)
+                || entry.active.as_ref().is_some_and(|active| active.plan.target() == target)
         });
-        if !needed {
-            self.client(target, now, Client::close);
-            if self.clients.get(target).is_some_and(|client| client.link_id().is_none()) {
-                self.clients.remove(target);
-                self.events.push_back(Event::Target { target: target.clone(), view: None });
-            }
+        let Some(id) = self.names.get(target).copied().filter(|_| !needed) else { return };
+        self.client(id, now, Client::close);
+        if self.clients.get(&id).is_some_and(|client| client.link_id().is_none()) {
+            self.clients.remove(&id);
+            self.names.remove(target);
+            self.events.push_back(Event::Target { target: target.clone(), view: None });
+        }
+    }
+
+    pub(super) fn retire_client(&mut self, id: ClientId, now: Instant) {
+        if let Some(target) = self.clients.get(&id).map(|client| client.target().clone()) {
+            self.retire(&target, now);
         }
     }
 
@@ -72,21 +83,33 @@ impl Engine {
         now: Instant,
         call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
     ) -> Option<T> {
-        let target = self.links.get(&link)?.clone();
-        if self.clients.get(&target).and_then(Client::link_id) != Some(link) {
-            return None;
+        let id = *self.links.get(&link)?;
+        let call = |client: &mut Client, cx: &mut Context<'_>| {
+            (client.link_id() == Some(link)).then(|| call(client, cx))
+        };
+        self.client(id, now, call).flatten()
+    }
+
+    /// The client of a target; a new one if there is none.
+    pub(super) fn client_of(&mut self, target: &Target) -> ClientId {
+        if let Some(id) = self.names.get(target) {
+            return *id;
         }
-        self.client(&target, now, call)
+        self.next_client += 1;
+        let id = ClientId(self.next_client);
+        self.names.insert(target.clone(), id);
+        self.clients.insert(id, Client::new(target.clone()));
+        id
     }
 
     /// Calls a client and carries out what it wants.
     pub(super) fn client<T>(
         &mut self,
-        target: &Target,
+        id: ClientId,
         now: Instant,
         call: impl FnOnce(&mut Client, &mut Context<'_>) -> T,
     ) -> Option<T> {
-        let client = self.clients.get_mut(target)?;
+        let client = self.clients.get_mut(&id)?;
         // Calls are nested: an inner one finds this empty and has its own.
         let mut out = core::mem::take(&mut self.outputs);
         let (next_link, originator) = (&mut self.next_link, &mut self.originator);
@@ -94,25 +117,26 @@ impl Engine {
         let due = client.poll_timeout().filter(|at| client.armed.is_none_or(|armed| *at < armed));
         if let Some(due) = due {
             // One that is too early does no harm: most clients are used again before their time.
-            client.armed.replace(due).map(|armed| self.housekeeping.remove(&(armed, target.clone())));
-            self.housekeeping.insert((due, target.clone()));
+            client.armed.replace(due).map(|armed| self.housekeeping.remove(&(armed, id)));
+            self.housekeeping.insert((due, id));
         }
         if client.take_changed() {
             let view = Some(Box::new(client.view()));
-            self.events.push_back(Event::Target { target: target.clone(), view });
+            self.events.push_back(Event::Target { target: client.target().clone(), view });
         }
         while let Some(output) = out.pop_front() {
-            self.output(target, output, now);
+            self.output(id, output, now);
         }
         self.outputs = out;
         Some(result)
     }
 
-    fn output(&mut self, target: &Target, output: Output, now: Instant) {
+    fn output(&mut self, id: ClientId, output: Output, now: Instant) {
         match output {
             Output::Connect(link) => {
-                self.links.insert(link, target.clone());
-                self.events.push_back(Event::Connect { link, target: target.clone() });
+                self.links.insert(link, id);
+                let target = self.clients.get(&id).map(|client| client.target().clone());
+                self.events.extend(target.map(|target| Event::Connect { link, target }));
             }
             Output::Disconnect(link) => {
                 self.links.remove(&link);
