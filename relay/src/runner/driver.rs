@@ -41,7 +41,7 @@ where
                 if machine.poll_transmit(link, &mut out) {
                     tracing::trace!(link = link.0, bytes = ?out, "write");
                     let at = SystemTime::now();
-            io.write_all(&out).await?;
+                    io.write_all(&out).await?;
                     io.flush().await?;
                     machine.written(link, &out, at);
                     out.clear();
