@@ -8,12 +8,14 @@ use cipdeck_shared::{
 };
 use yew::prelude::*;
 
-use super::down::{advice, blocks_of, count, names};
+use super::down::{advice, by_target, count, names};
 use crate::{browser, i18n::tr, kit::Shape, pages::block::age_words, store::Row, workbench::Workbench};
 
 /// All that answer; those that do not are told above.
 pub(super) fn targets(bench: &Workbench) -> Html {
     let all = bench.relay().targets().all();
+    let blocks = by_target(bench.rows());
+    let of = |target: &String| blocks.get(target).map_or(&[][..], Vec::as_slice);
     let shown: Vec<_> = all.iter().filter(|target| target.state != TargetState::Down).collect();
     html! {
         <section class="channel">
@@ -21,26 +23,25 @@ pub(super) fn targets(bench: &Workbench) -> Html {
             if shown.is_empty() {
                 <p class="quiet">{ tr!("targets.none") }</p>
             }
-            <ul class="targets">{ for shown.iter().map(|status| target(bench, status)) }</ul>
+            <ul class="targets">{ for shown.iter().map(|status| target(status, of(&status.target))) }</ul>
         </section>
     }
 }
 
-fn target(bench: &Workbench, status: &TargetStatus) -> Html {
-    let blocks = blocks_of(bench.rows(), &status.target);
+fn target(status: &TargetStatus, blocks: &[Rc<Row>]) -> Html {
     let (class, shape, word) = state(status.state);
     html! {
         <li key={status.target.clone()} class="target" data-test="target">
             <div class="target-head">
                 <b class="mono">{ &status.target }</b>
                 <span class={classes!("state", class)}>{ shape.draw() }<span class="state-word">{ word }</span></span>
-                <span class="quiet">{ used(&blocks) }</span>
+                <span class="quiet">{ used(blocks) }</span>
                 if let Some(profile) = status.profile {
                     <span class="quiet">{ tr!("targets.profile", profile = profile.word()) }</span>
                 }
                 <details>
-                    <summary>{ count(&blocks) }</summary>
-                    { names(&blocks) }
+                    <summary>{ count(blocks) }</summary>
+                    { names(blocks) }
                 </details>
             </div>
             <ul class="target-facts">
