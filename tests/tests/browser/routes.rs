@@ -112,6 +112,12 @@ async fn a_device_is_discovered_and_becomes_a_block_that_runs() {
     assert!(!user.can_use("discover-do").await, "nothing is asked");
     user.shot("findings").await;
     user.fill("Listen for", "300").await;
+    // A broadcast address of no network here: only the relay can know.
+    user.fill("Addresses", "255.255.255.255").await;
+    user.click_part("discover-do").await;
+    let refused = user.find("a finding", "//*[@id='discover-addresses-finding']", PATIENCE).await;
+    assert!(refused.contains("255.255.255.255"), "{refused}");
+    user.shot("refused").await;
     // A port of loopback at which nobody listens.
     user.fill("Addresses", "127.0.0.1:9").await;
     user.click_part("discover-do").await;
@@ -130,7 +136,8 @@ async fn a_device_is_discovered_and_becomes_a_block_that_runs() {
     user.click("Run").await;
     value(&user, "cipdeck demo drive").await;
     user.shot("ran").await;
-    user.close().await;
+    // The refused request.
+    user.close_with_expected_errors().await;
 }
 
 async fn value(user: &Browser, text: &str) {

@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 
 use cipdeck_shared::{
-    api::{DiscoverRequest, Discovered, DiscoveredDevice, Problem},
+    api::{DiscoverRequest, Discovered, DiscoveredDevice, Problem, ProblemCode},
     config::{MsgCipGeneric, read_number},
     plan::Severity,
 };
@@ -72,7 +72,8 @@ pub(crate) fn Discover() -> Html {
                     </span>
                 </p>
             </form>
-            { now.answer.as_ref().map(|answer| answered(&bench, answer)) }
+            // Always there: with one child more or less the form would be made anew, and the focus lost.
+            <div>{ now.answer.as_ref().map(|answer| answered(&bench, answer)) }</div>
         </details>
     }
 }
@@ -88,7 +89,7 @@ fn ask(change: Change, request: DiscoverRequest) {
 }
 
 fn fields(now: &Panel, remarks: &[Remark], change: &Change) -> Html {
-    let of = |field: &str| remarks.iter().filter(|remark| remark.field == field).cloned().collect();
+    let of = |field: &'static str| remarks.iter().filter(move |remark| remark.field == field).cloned();
     let addresses = TextField {
         id: "discover-addresses".into(),
         name: ADDRESSES.into(),
@@ -97,8 +98,9 @@ fn fields(now: &Panel, remarks: &[Remark], change: &Change) -> Html {
         multiline: false,
         readout: Some(tr!("discover.addresses_hint")),
         placeholder: "192.168.1.100, 192.168.2.255",
-        remarks: of(ADDRESSES),
-        on_text: change.reform(|text| Box::new(|panel: &mut Panel| panel.addresses = text) as _),
+        remarks: of(ADDRESSES).chain(refused(now)).collect(),
+        on_text: change
+            .reform(|text| Box::new(|panel: &mut Panel| (panel.addresses, panel.answer) = (text, None)) as _),
     };
     let timeout = NumberFieldProps {
         id: "discover-timeout".into(),
@@ -107,10 +109,25 @@ fn fields(now: &Panel, remarks: &[Remark], change: &Change) -> Html {
         text: now.timeout.clone().unwrap_or_else(|| DEFAULT_MS.to_string()).into(),
         meaning: Some(tr!("field.ms")),
         placeholder: None,
-        remarks: of(TIMEOUT),
+        remarks: of(TIMEOUT).collect(),
         on_text: change.reform(|text| Box::new(|panel: &mut Panel| panel.timeout = Some(text)) as _),
     };
     html! { <>{ addresses.draw() }{ number_field(&timeout) }</> }
+}
+
+/// An address that only the relay knows to be wrong, such as the broadcast address of another network.
+fn refused(now: &Panel) -> Option<Remark> {
+    match &now.answer {
+        Some(Err(problem)) if problem.code == ProblemCode::Unreadable => {
+            Some(wrong(ADDRESSES, problem.code.word(), problem.detail.clone()))
+        }
+        _ => None,
+    }
+}
+
+fn wrong(field: &str, rule: &str, text: String) -> Remark {
+    let (field, rule) = (field.to_owned(), rule.to_owned());
+    Remark { field, severity: Severity::Error, rule, text, error_ids: None }
 }
 
 const ADDRESSES: &str = "addresses";
@@ -124,10 +141,7 @@ const MAX_MS: i64 = 10_000;
 /// The request, and what is wrong with it.
 fn read(panel: &Panel) -> (DiscoverRequest, Vec<Remark>) {
     let mut remarks = Vec::new();
-    let mut remark = |field: &str, rule: &str, text: String| {
-        let (field, rule) = (field.to_owned(), rule.to_owned());
-        remarks.push(Remark { field, severity: Severity::Error, rule, text, error_ids: None });
-    };
+    let mut remark = |field: &str, rule: &str, text: String| remarks.push(wrong(field, rule, text));
     let separated = panel.addresses.split(|c: char| c == ',' || c == ';' || c.is_ascii_whitespace());
     let addresses: Vec<_> = separated.filter(|text| !text.is_empty()).map(str::to_owned).collect();
     if let Some(bad) = addresses.iter().find(|text| !is_address(text)) {
@@ -157,6 +171,8 @@ fn is_address(text: &str) -> bool {
 
 fn answered(bench: &Workbench, answer: &Result<Discovered, Problem>) -> Html {
     let discovered = match answer {
+        // Said at its field.
+        Err(problem) if problem.code == ProblemCode::Unreadable => return html! {},
         Err(problem) => {
             let text = tr!("discover.failed", why = problem.detail);
             return html! { <p class="finding error" role="alert" data-test="discover-problem">{ text }</p> };
