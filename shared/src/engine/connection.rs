@@ -38,6 +38,9 @@ const MAX_SILENCE: Millis = Millis(WATCHDOG.0 - 2_000);
 /// A connection that is kept alive is read over at least this often, so that one read may come late.
 pub(super) const MAX_KEEP_ALIVE: Millis = Millis(WATCHDOG.0 / 2);
 
+/// The router's own time for Forward_Close.
+const ROUTER_TIME_MS: u32 = 1_000;
+
 /// How often Forward_Open is tried with other parameters.
 const ATTEMPTS: u8 = 4;
 
@@ -149,6 +152,11 @@ impl Opening {
         if self.large { ServiceCode::LargeForwardOpen } else { ServiceCode::ForwardOpen }
     }
 
+    /// Closes what may have been opened although nobody has heard of it.
+    pub(super) fn close_request(&self) -> Option<Vec<u8>> {
+        close_request(self.triad, &self.route)
+    }
+
     /// Whether the target's answer is about this connection at all.
     pub(super) fn answered(
         mut self,
@@ -231,9 +239,8 @@ impl Connection {
         self.sequence
     }
 
-    pub(super) fn close_request(&self, timeout: RequestTimeout) -> Result<Vec<u8>, TooLong> {
-        let close = ForwardClose { timeout, triad: self.triad, path: path(&self.route) };
-        Ok(close.request()?.bytes())
+    pub(super) fn close_request(&self) -> Option<Vec<u8>> {
+        close_request(self.triad, &self.route)
     }
 
     /// The target may have given it up.
@@ -251,6 +258,13 @@ impl Connection {
 /// larger than what comes, so that a target with smaller connections need not be given up.
 fn needed_size(plan: &MessagePlan) -> u16 {
     u16::try_from(2 + plan.request().length()).unwrap_or(u16::MAX)
+}
+
+/// Its parts are short: there is always one.
+fn close_request(triad: ConnectionTriad, route: &Epath) -> Option<Vec<u8>> {
+    let timeout = RequestTimeout::at_least(ROUTER_TIME_MS);
+    let request = ForwardClose { timeout, triad, path: path(route) }.request().ok()?;
+    Some(request.bytes())
 }
 
 /// Explicit messages end at the Message Router.

@@ -245,6 +245,7 @@ fn ucmm_timeout_covers_the_opening_and_conn_msg_timeout_the_reply() {
 
     owner.run(A).unwrap();
     let link = owner.register();
+    owner.refuse(link, 1, &[0x0107], &[]);
     owner.pass(900_000);
     owner.accept_open(link);
     owner.pass(4_999_999);

@@ -272,6 +272,31 @@ fn a_late_answer_to_a_forward_open_that_was_given_up_opens_nothing() {
 }
 
 #[test]
+fn what_a_forward_open_without_answer_may_have_opened_is_closed_before_the_next_one() {
+    type End = fn(&mut Owner, cipdeck_shared::engine::LinkId);
+    let ends: [(&str, End); 4] = [
+        ("timeout", |owner, _| owner.pass(3_000_000)),
+        ("cancel", |owner, _| owner.cancel(A)),
+        ("closed", |owner, link| owner.closed(link)),
+        ("nonsense", |owner, link| owner.succeed(link, &[1, 2, 3])),
+    ];
+    for (name, end) in ends {
+        let (mut owner, link) = opening(Profile::Generic);
+        let open = owner.last(link).open();
+        end(&mut owner, link);
+        owner.run(A).unwrap();
+        let link = owner.register();
+        assert_eq!(owner.trace(), ["register", "open", "register", "close"], "{name}");
+        let request = owner.last(link).request.unwrap();
+        let close = cipdeck_shared::wire::ForwardClose::decode(request.data()).unwrap();
+        assert_eq!((close.triad, close.path), (open.triad, open.path), "{name}");
+        owner.accept_open(link);
+        owner.succeed(link, &[1]);
+        assert!(owner.view(A).q, "{name}");
+    }
+}
+
+#[test]
 fn the_controller_has_sixteen_connections_and_gives_up_an_idle_one_for_the_next() {
     let mut owner = Owner::new();
     let mut links = Vec::new();

@@ -140,6 +140,21 @@ fn a_target_that_does_not_say_is_nothing_special_and_never_asked_again() {
 }
 
 #[test]
+fn a_target_that_closes_before_it_was_asked_is_asked_the_next_time() {
+    let mut owner = Owner::new();
+    owner.put(A, OWN_SLOT, |_| {});
+    owner.run(A).unwrap();
+    let link = owner.link();
+    owner.connected(link);
+    owner.writes = false;
+    owner.answer_register(link);
+    owner.writes = true;
+    owner.closed(link);
+    owner.register();
+    assert_eq!(owner.trace(), ["register", "register", "identity"]);
+}
+
+#[test]
 fn a_late_identity_changes_nothing_about_a_message_that_is_out() {
     let (mut owner, link) = running(OWN_SLOT, Profile::Auto, true);
     let header = owner.last_header(link, Command::ListIdentity);

@@ -85,5 +85,5 @@ fn cancelling_the_message_that_opens_the_connection_lets_the_next_one_open_it() 
     let link = owner.register_and_open();
     owner.succeed(link, &[2]);
     assert_eq!(owner.view(BlockId(2)).res_data, [2]);
-    assert_eq!(owner.trace(), ["register", "open", "register", "open", "connected"]);
+    assert_eq!(owner.trace(), ["register", "open", "register", "close", "open", "connected"]);
 }

@@ -206,6 +206,23 @@ fn a_device_with_room_for_one_connection_is_used_again_after_every_loss() {
 }
 
 #[test]
+fn a_time_too_short_for_opening_does_not_use_up_the_connections_of_a_device() {
+    let device = SimConfig { delay: Millis(400), ..SimConfig::default() };
+    let spec = BlockSpec { timeouts: (250, 800), period: 300, ..BlockSpec::connected(0) };
+    let mut world = World::new(vec![device], vec![spec]);
+    world.press_at(1, Press::In(0, true));
+    let mut most = 0;
+    for _ in 0..300 {
+        world.pass(100);
+        let counters = world.devices[0].counters();
+        most = most.max(counters.opened - counters.closed - counters.timed_out);
+    }
+    assert!(most <= 2, "{most} connections at once");
+    world.stop();
+    world.check_stopped();
+}
+
+#[test]
 fn profiles_are_found_out_on_the_way() {
     for (vendor, name, opened) in [(1, "2080-LC50", 504), (1, "1756-L85E", 4_002), (47, "NX102", 1_994)] {
         let mut device = SimConfig::default();

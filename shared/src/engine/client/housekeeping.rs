@@ -1,9 +1,7 @@
 //! What a client does without a block: closing what is not used, keeping alive, asking who it is.
 
 use crate::config::Profile;
-use crate::wire::{
-    ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouterRequest, RequestTimeout, ServiceCode,
-};
+use crate::wire::{ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
 use crate::engine::block::Input;
 use crate::engine::connection::MAX_KEEP_ALIVE;
@@ -27,9 +25,6 @@ const KEEP_ALIVE_TIME: Millis = Millis(3_000);
 
 /// Connections of earlier sockets that are remembered.
 const MAX_LOST: usize = 16;
-
-/// The router's own time for Forward_Close.
-const ROUTER_TIME_MS: u32 = 1_000;
 
 /// Identity, status: every device has it.
 const STATUS_ATTRIBUTE: u32 = 5;
@@ -158,7 +153,7 @@ impl Client {
     pub(super) fn close_connection(&mut self, index: usize, cx: &mut Context<'_>) {
         let connection = self.connections.swap_remove(index);
         self.changed = true;
-        if let Ok(request) = connection.close_request(RequestTimeout::at_least(ROUTER_TIME_MS)) {
+        if let Some(request) = connection.close_request() {
             self.send_own(What::Close, &request, 1, Some(cx.now + CLOSE_TIME), cx);
         }
     }
@@ -166,7 +161,10 @@ impl Client {
     /// The socket is gone: the target may keep its connections until their watchdog.
     pub(super) fn lose_connections(&mut self) {
         for connection in self.connections.drain(..) {
-            self.lost.extend(connection.close_request(RequestTimeout::at_least(ROUTER_TIME_MS)).ok());
+            self.lost.extend(connection.close_request());
+        }
+        if let Some(Outstanding { what: What::Open(_, opening), written: true, .. }) = &self.outstanding {
+            self.lost.extend(opening.close_request());
         }
         let surplus = self.lost.len().saturating_sub(MAX_LOST);
         self.lost.drain(..surplus);

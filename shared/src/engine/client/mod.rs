@@ -212,6 +212,9 @@ impl Client {
         if let Some(outstanding) = own {
             if outstanding.written {
                 // Its answer may still come: it must never meet another request.
+                if let What::Open(_, opening) = &outstanding.what {
+                    self.lost.extend(opening.close_request());
+                }
                 self.disconnect(cx);
             } else {
                 self.transmit.clear();
@@ -266,7 +269,7 @@ impl Client {
             Some(Outstanding { what: What::Open(block, _), written: true, .. }) => {
                 self.fail_first(block, Failure::Closed, cx);
             }
-            Some(Outstanding { what: What::Identify, .. }) => self.known.anonymous = true,
+            Some(Outstanding { what: What::Identify, written: true, .. }) => self.known.anonymous = true,
             _ => {}
         }
         if was_registering {

@@ -183,10 +183,14 @@ impl Client {
     }
 
     fn open_replied(&mut self, block: BlockId, opening: Opening, reply: Reply, cx: &mut Context<'_>) {
+        let close = opening.close_request();
         let answer = match reply.decode() {
             Ok(answer) if answer.service == opening.service() => answer,
-            Ok(answer) => return self.malformed_open(block, wrong_service(&answer, reply.at()), &reply, cx),
-            Err(error) => return self.malformed_open(block, error, &reply, cx),
+            other => {
+                self.lost.extend(close);
+                let error = other.map_or_else(|error| error, |answer| wrong_service(&answer, reply.at()));
+                return self.malformed_open(block, error, &reply, cx);
+            }
         };
         match opening.answered(&answer, cx.originator, cx.now) {
             Opened::Yes(connection) => {
@@ -196,6 +200,7 @@ impl Client {
             }
             Opened::Again(opening) => self.open(opening, cx),
             Opened::No if answer.status == GeneralStatus::Success => {
+                self.lost.extend(close);
                 let kind = DecodeErrorKind::Unexpected { field: "connection in the reply", found: 0 };
                 self.malformed_open(block, DecodeError { at: reply.at(), kind }, &reply, cx);
             }
