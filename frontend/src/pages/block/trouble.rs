@@ -52,7 +52,7 @@ fn numbers(status: &BlockStatus) -> String {
     let ext = if codes.ext_error_id == 0 {
         String::new()
     } else {
-        format!(" · ExtErrorID {}", hex(codes.ext_error_id))
+        format!(" · ExtErrorID {0} (0x{0:04X})", codes.ext_error_id)
     };
     format!("ErrorID {} · SubErrorID {}{ext}", codes.error_id, hex(codes.sub_error_id))
 }
