@@ -10,7 +10,7 @@ use crate::wire::{
     TimeoutMultiplier, TooLong,
 };
 
-use super::session::Ids;
+use super::matching::Ids;
 use super::time::{Instant, Millis};
 
 /// What we ask for unless more is needed. libplctag: 0x43F8, 504 bytes.

@@ -18,6 +18,7 @@ mod entry;
 mod event;
 mod failure;
 mod machine;
+mod matching;
 mod session;
 mod status;
 mod target;

@@ -5,7 +5,7 @@ use crate::wire::{ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouter
 
 use crate::engine::block::Input;
 use crate::engine::connection::MAX_KEEP_ALIVE;
-use crate::engine::session::Expected;
+use crate::engine::matching::Expected;
 use crate::engine::status::{Cause, CauseKind};
 use crate::engine::time::{Instant, Millis};
 

@@ -9,10 +9,12 @@ use crate::wire::{RequestTimeout, UnconnectedMessage};
 use crate::engine::block::Input;
 use crate::engine::connection::Opening;
 use crate::engine::event::{LinkId, Wants};
-use crate::engine::session::{Expected, Session};
+use crate::engine::matching::Expected;
+use crate::engine::session::Session;
 use crate::engine::time::Instant;
 
-use super::{Client, Context, Link, Output, Outstanding, What, timeout_s};
+use super::messages::timeout_s;
+use super::{Client, Context, Link, Output, Outstanding, What};
 
 impl Client {
     pub(super) fn advance(&mut self, cx: &mut Context<'_>) {
