@@ -1,0 +1,65 @@
+//! What the engine says, carried out.
+
+use std::sync::Arc;
+
+use cipdeck_shared::config::{BlockId, Target};
+use cipdeck_shared::engine::{BlockView, Event, Instant, LinkId, StatusBits, Wants};
+
+use super::{Ended, Inner, State, link};
+
+impl Inner {
+    /// Called under the lock.
+    pub(super) fn carry_out(self: &Arc<Self>, event: Event, state: &mut State, now: Instant) {
+        match event {
+            Event::Connect { link, target } => self.connect(link, target, state),
+            Event::Disconnect { link } => {
+                // Dropping the last handle tells the task, which drops the socket.
+                state.sockets.remove(&link);
+            }
+            Event::Transmit { link } => {
+                if let Some(socket) = state.sockets.get(&link) {
+                    socket.wake();
+                }
+            }
+            Event::Wants(wants) => self.ask(&wants, state, now),
+            Event::Changed { block, edge } => self.tell(block, edge, state),
+            Event::Target { target, view } => self.observer.target(&target, view.as_deref()),
+            Event::Finished { block, shot, view, exchange } => {
+                let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
+                tracing::debug!(%block, shot, error_id, sub_error_id, elapsed_us = view.elapsed_us, "ended");
+                let trace = state.carried.remove(&block).map(|trail| trail.trace());
+                let status = self.observer.finished(block, &view, &exchange, trace);
+                if let Some(run) = state.runs.remove(&(block, shot)) {
+                    // Nobody may wait any more.
+                    let _ = run.send(Ended { view, exchange, status });
+                }
+            }
+        }
+    }
+
+    fn tell(&self, block: BlockId, edge: Option<(u64, StatusBits)>, state: &State) {
+        if let Some(view) = self.observer.watches().then(|| state.engine.glance(block)).flatten() {
+            self.observer.changed(block, &BlockView { edges: edge.into_iter().collect(), ..view });
+        }
+    }
+
+    fn connect(self: &Arc<Self>, link: LinkId, target: Target, state: &mut State) {
+        let (socket, task) = link::open(link, target, Arc::clone(self));
+        state.sockets.insert(link, socket);
+        self.tasks.spawn_on(task, &self.runtime);
+    }
+
+    fn ask(&self, wants: &Wants, state: &mut State, now: Instant) {
+        let verdict = (self.gate)(&state.grants, wants.block, wants.revision);
+        if let Err(denied) = verdict {
+            tracing::warn!(block = %wants.block, shot = wants.shot, revision = wants.revision, %denied, "not sent");
+        }
+        if verdict.is_ok()
+            && let Some(trail) = state.trails.get(&wants.link)
+        {
+            trail.begin();
+            state.carried.insert(wants.block, Arc::clone(trail));
+        }
+        state.engine.permit(wants, verdict.is_ok(), now);
+    }
+}
