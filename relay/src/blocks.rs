@@ -205,7 +205,7 @@ impl Blocks {
 /// All findings about a configuration, and the bytes that it would send.
 pub(crate) fn check(config: &MsgCipGeneric) -> Checked {
     let (plan, all) = MessagePlan::parse(config);
-    let request = plan.map(|plan| write_hex(&plan.request().bytes()));
+    let request = plan.map(|plan| write_hex(plan.bytes()));
     Checked { findings: findings(&all), request }
 }
 

@@ -129,7 +129,7 @@ impl Drop for Message {
 
 /// There is no viewer: the end of a run is its only news.
 #[derive(Debug)]
-struct Nobody;
+pub(crate) struct Nobody;
 
 impl Observer for Nobody {
     fn watches(&self) -> bool {

@@ -104,7 +104,7 @@ impl Demo {
     /// Gives the engine a block's message. The last good value of another message says nothing about it.
     fn put(&self, id: DeckId, plan: MessagePlan, confirmed: bool) -> BlockId {
         let block = self.name(id);
-        let request = write_hex(&plan.request().bytes());
+        let request = write_hex(plan.bytes());
         self.0.last.borrow_mut().retain(|name, (_, last)| *name != block || last.request == request);
         self.0.bench.borrow_mut().put(block, plan, confirmed);
         block

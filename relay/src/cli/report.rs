@@ -25,7 +25,7 @@ pub(super) fn findings(findings: &[Finding]) {
 
 /// Findings and request as JSON.
 pub(super) fn checked(plan: Option<&MessagePlan>, findings: &[Finding]) -> String {
-    let request = plan.map(|plan| write_hex(&plan.request().bytes()));
+    let request = plan.map(|plan| write_hex(plan.bytes()));
     json(&Checked { findings: api::findings(findings), request })
 }
 

@@ -2,25 +2,9 @@ use cipdeck_shared::config::{MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::{CauseKind, Phase, StatusBits};
 
 use super::*;
+use crate::client::Nobody;
 
 const BLOCK: BlockId = BlockId(1);
-
-/// Nobody watches.
-struct Nobody;
-
-impl Observer for Nobody {
-    fn watches(&self) -> bool {
-        false
-    }
-
-    fn changed(&self, _: BlockId, _: &BlockView) {}
-
-    fn finished(&self, _: BlockId, _: &BlockView, _: &Exchange, _: Option<Trace>) -> Option<BlockStatus> {
-        None
-    }
-
-    fn target(&self, _: &Target, _: Option<&TargetView>) {}
-}
 
 fn plan(config: &MsgCipGeneric) -> MessagePlan {
     MessagePlan::parse(config).0.unwrap()

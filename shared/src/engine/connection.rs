@@ -257,7 +257,7 @@ impl Connection {
 /// Sequence count and request. The longest reply, 2 + 4 + 490 bytes, fits into the usual size; `ResData` is mostly far
 /// larger than what comes, so that a target with smaller connections need not be given up.
 fn needed_size(plan: &MessagePlan) -> u16 {
-    u16::try_from(2 + plan.request().length()).unwrap_or(u16::MAX)
+    u16::try_from(2 + plan.bytes().len()).unwrap_or(u16::MAX)
 }
 
 /// Its parts are short: there is always one.

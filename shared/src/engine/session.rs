@@ -10,7 +10,9 @@ use crate::wire::{
     UnconnectedMessage,
 };
 
+use super::connection::Connection;
 use super::matching::{Expected, Matching};
+use super::time::Instant;
 
 /// What came in.
 #[derive(Debug, PartialEq, Eq)]
@@ -78,15 +80,21 @@ impl Session {
         message.encode(&self.request(Command::SendRRData, context), timeout_s, out);
     }
 
-    /// Appends a request over a connection.
+    /// Appends a request over a connection, which fits into a frame. Returns what its reply will carry.
     pub(super) fn send_connected(
         &self,
-        message: ConnectedMessage<'_>,
+        request: &[u8],
         context: SenderContext,
-        (id, sequence): (ConnectionId, u16),
+        connection: &mut Connection,
+        now: Instant,
         out: &mut Vec<u8>,
-    ) {
-        message.encode(&self.request(Command::SendUnitData, context), id, sequence, out);
+    ) -> Expected {
+        let sequence = connection.next_sequence(now);
+        if let Ok(message) = ConnectedMessage::new(request) {
+            let header = self.request(Command::SendUnitData, context);
+            message.encode(&header, connection.ids.o_t, sequence, out);
+        }
+        Expected::Connected(context, connection.ids, sequence)
     }
 
     /// Appends ListIdentity.

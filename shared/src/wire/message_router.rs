@@ -67,11 +67,6 @@ impl MessageRouterRequest {
         Ok(Self { service, path, data: reader.rest().to_vec() })
     }
 
-    /// How many bytes [`Self::encode`] appends.
-    pub fn length(&self) -> usize {
-        2 + self.path.bytes().len() + self.data.len()
-    }
-
     /// Appends the request.
     pub fn encode(&self, out: &mut Vec<u8>) {
         out.push(self.service.0);

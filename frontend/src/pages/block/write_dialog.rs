@@ -86,7 +86,7 @@ fn what(subject: &Subject, plan: &MessagePlan) -> Html {
         Access::Write => tr!("write.access_write"),
         Access::Unknown | Access::Read => tr!("write.access_unknown"),
     };
-    let bytes: Vec<_> = plan.request().bytes().iter().map(|byte| format!("{byte:02X}")).collect();
+    let bytes: Vec<_> = plan.bytes().iter().map(|byte| format!("{byte:02X}")).collect();
     let number = |value: i64| format!("{value} = {}", hexadecimal(value));
     html! { <>
         <p>{ access }</p>

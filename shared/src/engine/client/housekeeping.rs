@@ -1,7 +1,7 @@
 //! What a client does without a block: closing what is not used, keeping alive, asking who it is.
 
 use crate::config::Profile;
-use crate::wire::{ClassCode, ConnectedMessage, Epath, LogicalKind, MessageRouterRequest, ServiceCode};
+use crate::wire::{ClassCode, Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
 use crate::engine::block::Input;
 use crate::engine::connection::MAX_KEEP_ALIVE;
@@ -219,14 +219,9 @@ impl Client {
         let (Some(connection), Link::Ready(id, session)) = (connection, &self.link) else {
             return self.send_own(What::KeepAlive(None), &request, 1, deadline, cx);
         };
-        if let Ok(message) = ConnectedMessage::new(&request) {
-            let sequence = connection.next_sequence(cx.now);
-            let address = (connection.ids.o_t, sequence);
-            session.send_connected(message, context, address, &mut self.transmit);
-            let what = What::KeepAlive(Some(connection.triad.serial));
-            let expected = Expected::Connected(context, connection.ids, sequence);
-            self.outstanding = Some(Outstanding { what, expected, written: false, deadline });
-            cx.out.push_back(Output::Transmit(*id));
-        }
+        let expected = session.send_connected(&request, context, connection, cx.now, &mut self.transmit);
+        let what = What::KeepAlive(Some(connection.triad.serial));
+        self.outstanding = Some(Outstanding { what, expected, written: false, deadline });
+        cx.out.push_back(Output::Transmit(*id));
     }
 }

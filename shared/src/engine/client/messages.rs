@@ -2,7 +2,7 @@
 
 use crate::config::BlockId;
 use crate::plan::MessagePlan;
-use crate::wire::{ConnectedMessage, UnconnectedMessage};
+use crate::wire::UnconnectedMessage;
 
 use crate::engine::block::Input;
 use crate::engine::event::Wants;
@@ -95,12 +95,9 @@ impl Client {
         }
         let Link::Ready(id, session) = &self.link else { return };
         let (expected, serial) = if let Some(connection) = connection {
-            let sequence = connection.next_sequence(cx.now);
-            if let Ok(message) = ConnectedMessage::new(job.plan.bytes()) {
-                let address = (connection.ids.o_t, sequence);
-                session.send_connected(message, context, address, &mut self.transmit);
-            }
-            (Expected::Connected(context, connection.ids, sequence), Some(connection.triad.serial))
+            let transmit = &mut self.transmit;
+            let expected = session.send_connected(job.plan.bytes(), context, connection, cx.now, transmit);
+            (expected, Some(connection.triad.serial))
         } else {
             if let Ok(message) = UnconnectedMessage::new(routed.message()) {
                 session.send_unconnected(message, context, timeout_s(&job.plan), &mut self.transmit);
