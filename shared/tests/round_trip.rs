@@ -5,8 +5,9 @@
 use cipdeck_shared::wire::{
     AdditionalStatus, CipType, CipValue, Command, CommonPacketFormat, Deframer, Encapsulation,
     EncapsulationStatus, Epath, GeneralStatus, Header, ItemType, ListIdentityItem, ListServicesItem,
-    LogicalKind, MessageRouterReply, MessageRouterRequest, PortSegment, Reader, RegisterSession, SendRrData,
-    SenderContext, ServiceCode, SessionHandle, ShortString, SocketAddress, UnconnectedMessage,
+    LogicalKind, MessageRouterReply, MessageRouterRequest, MultipleServicePacket, PortSegment, Reader,
+    RegisterSession, Segment, SendRrData, SenderContext, ServiceCode, SessionHandle, ShortString,
+    SocketAddress, SymbolSegment, UnconnectedMessage,
 };
 use proptest::array::uniform;
 use proptest::collection::vec;
@@ -81,6 +82,20 @@ proptest! {
     fn requests(service in 1..0x80_u8, path in epath(), data in bytes(500)) {
         let request = MessageRouterRequest::new(ServiceCode(service), path, data).unwrap();
         prop_assert_eq!(MessageRouterRequest::decode(&request.bytes()), Ok(request));
+    }
+
+    #[test]
+    fn names(parts in vec(vec(any::<u8>(), 1..=255), 1..4)) {
+        let segment = |name: &Vec<u8>| Segment::Symbol(SymbolSegment::new(name).unwrap());
+        let path = parts.iter().map(segment).fold(Epath::default(), Epath::with);
+        prop_assert_eq!(Epath::decode(&path.bytes()), Ok(path));
+    }
+
+    #[test]
+    fn packets_of_requests(parts in vec(vec(any::<u8>(), 1..40), 1..12)) {
+        let packet = MultipleServicePacket::new(parts.iter().map(Vec::as_slice).collect()).unwrap();
+        let request = packet.request().unwrap();
+        prop_assert_eq!(MultipleServicePacket::decode(request.data()), Ok(packet));
     }
 
     #[test]

@@ -5,7 +5,8 @@ mod common;
 
 use cipdeck_shared::wire::{
     CommonPacketFormat, DecodeError, DecodeErrorKind, Deframer, Encapsulation, Epath, ListIdentityItem,
-    ListServicesItem, MessageRouterReply, MessageRouterRequest, Reader, RegisterSession, SendRrData,
+    ListServicesItem, MessageRouterReply, MessageRouterRequest, MultipleServicePacket, Reader,
+    RegisterSession, SendRrData,
 };
 
 #[cfg(target_arch = "wasm32")]
@@ -14,7 +15,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 /// A decoder by its name, and where its positions start to count.
 type Decoder = (&'static str, usize, fn(&[u8]) -> Result<(), DecodeError>);
 
-const DECODERS: [Decoder; 9] = [
+const DECODERS: [Decoder; 10] = [
     ("Encapsulation", 0, |bytes| Encapsulation::decode(bytes).map(drop)),
     ("RegisterSession", 24, |bytes| RegisterSession::decode(bytes).map(drop)),
     ("SendRrData", 24, |bytes| SendRrData::decode(bytes).and_then(|data| data.unconnected().map(drop))),
@@ -23,6 +24,7 @@ const DECODERS: [Decoder; 9] = [
     ("ListServicesItem", 0, |bytes| ListServicesItem::decode(bytes).map(drop)),
     ("Epath", 0, |bytes| Epath::decode(bytes).map(drop)),
     ("MessageRouterRequest", 0, |bytes| MessageRouterRequest::decode(bytes).map(drop)),
+    ("MultipleServicePacket", 0, |bytes| MultipleServicePacket::decode(bytes).map(drop)),
     ("MessageRouterReply", 0, |bytes| MessageRouterReply::decode(bytes).map(drop)),
 ];
 

@@ -4,13 +4,10 @@ use alloc::format;
 use alloc::string::{String, ToString};
 
 use crate::table;
-use crate::wire::{ClassCode, LogicalKind, LogicalSegment, PortSegment, Reader, Segment};
+use crate::wire::{ClassCode, LogicalKind, LogicalSegment, PortSegment, Reader, Segment, SymbolSegment};
 
 use super::tree::Tree;
 use super::words::{ascii, hex, numbered};
-
-/// ANSI extended symbol segment: `91 | length | characters | 00 if the length is odd`. Omron W506 8-4-5.
-const SYMBOL: u8 = 0x91;
 
 /// What a path addresses, as far as it can be understood.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,7 +23,7 @@ impl Address {
     /// Reads segments until one is not understood.
     pub(super) fn of(path: &[u8]) -> Self {
         let mut address = Self::default();
-        if path.first() == Some(&SYMBOL) {
+        if path.first() == Some(&SymbolSegment::CODE) {
             return Self { class: Some(ClassCode::Symbol.0), ..address };
         }
         let mut reader = Reader::new(path);
@@ -52,7 +49,8 @@ pub(super) fn segments(tree: &mut Tree<'_>) -> Option<()> {
                 let (name, text) = describe(segment);
                 tree.leaf(length, name, |_| text)?;
             }
-            Err(_) if tree.peek().u8() == Ok(SYMBOL) => symbol(tree)?,
+            // A name that is cut.
+            Err(_) if tree.peek().u8() == Ok(SymbolSegment::CODE) => symbol(tree)?,
             Err(error) => {
                 tree.fail("segment", error);
                 return None;
@@ -67,6 +65,7 @@ fn describe(segment: Segment) -> (&'static str, String) {
         Segment::Port(port) => {
             return ("port", format!("{}: {}", port.port(), link(&port)));
         }
+        Segment::Symbol(symbol) => return ("symbol", name(symbol.name())),
         Segment::Logical(logical) => logical,
     };
     match kind {
@@ -93,8 +92,11 @@ fn symbol(tree: &mut Tree<'_>) -> Option<()> {
     // The segment byte is known; a missing length shows as a segment that is cut.
     let length = ahead.take(1).and_then(|_| ahead.u8()).map_or(0, usize::from);
     tree.leaf(2 + length.next_multiple_of(2), "symbol", |bytes| {
-        let name = bytes.get(2..2 + length).unwrap_or_default();
-        ascii(name).map_or_else(|| hex(name), ToString::to_string)
+        name(bytes.get(2..2 + length).unwrap_or_default())
     })?;
     Some(())
+}
+
+fn name(bytes: &[u8]) -> String {
+    ascii(bytes).map_or_else(|| hex(bytes), ToString::to_string)
 }

@@ -1,6 +1,7 @@
 //! A configuration → a message that can be sent, or all findings. The only place that turns text into requests.
 
 mod checks;
+mod effect;
 mod finding;
 pub mod limits;
 mod routed;
@@ -14,6 +15,7 @@ use crate::table::{self, Access};
 use crate::wire::{Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
 use self::checks::Checks;
+pub use self::effect::{Effect, effects};
 pub use self::finding::{Field, Finding, Severity};
 pub use self::routed::Routed;
 use self::routed::Routes;
@@ -33,7 +35,7 @@ pub struct MessagePlan {
     connection: Option<ConnectionPlan>,
     keep_alive_ms: u32,
     res_data_size: u16,
-    access: Access,
+    effects: Arc<[Effect]>,
     resume: bool,
 }
 
@@ -75,9 +77,11 @@ impl MessagePlan {
         let keep_alive = checks.keep_alive(config);
         let data = checks.request_data(config);
         let res_data_size = checks.res_data_size(config);
-        let access = app.as_ref().map(|app| table::classify(app.service, app.class));
-        checks.resume(config, access);
+        let alone = app.as_ref().map(|app| table::classify(app.service, app.class));
         let request = app.zip(data).and_then(|(app, data)| checks.request(app.service, app.path(), data));
+        let effects: Option<Arc<[Effect]>> = request.as_ref().map(|request| effects(&request.bytes()).into());
+        // While the data cannot be read, the service alone tells.
+        checks.resume(config, effects.as_deref().map(access_of).or(alone));
         let plan = || {
             let TargetPlan { path, ucmm_timeout_ms, connection } = target?;
             let request = request?;
@@ -94,7 +98,7 @@ impl MessagePlan {
                 connection,
                 keep_alive_ms: keep_alive?,
                 res_data_size: res_data_size?,
-                access: access?,
+                effects: effects?,
                 resume: config.resume,
             })
         };
@@ -165,15 +169,24 @@ impl MessagePlan {
         self.res_data_size
     }
 
-    /// Whether it reads, writes, or nobody knows.
-    pub const fn access(&self) -> Access {
-        self.access
+    /// Whether it reads, writes, or nobody knows: the worst of [`MessagePlan::effects`].
+    pub fn access(&self) -> Access {
+        access_of(&self.effects)
+    }
+
+    /// The services that objects get, also those that are carried inside of the request. At least one.
+    pub fn effects(&self) -> &[Effect] {
+        &self.effects
     }
 
     /// Whether IN is restored after a start of the relay.
     pub const fn resume(&self) -> bool {
         self.resume
     }
+}
+
+fn access_of(effects: &[Effect]) -> Access {
+    Access::of_all(effects.iter().map(|effect| effect.access))
 }
 
 /// The numbers of CIPAPPCFG, all in range.

@@ -72,8 +72,5 @@ pub(super) fn ends_at_own_slot(route: &Epath) -> bool {
 
 fn without_last(route: &Epath) -> Epath {
     let kept = route.segments().split_last().map_or(&[][..], |(_, kept)| kept);
-    kept.iter().fold(Epath::default(), |path, segment| match segment {
-        Segment::Port(port) => path.hop(port.clone()),
-        Segment::Logical(logical) => path.then(logical.kind, logical.value),
-    })
+    kept.iter().cloned().fold(Epath::default(), Epath::with)
 }

@@ -20,9 +20,21 @@ impl Access {
     pub const fn may_write(self) -> bool {
         !matches!(self, Self::Read)
     }
+
+    /// What several requests do together: a write, if one of them is known to write; a read, only if all of them are.
+    /// Nothing at all is unknown.
+    pub fn of_all(all: impl IntoIterator<Item = Self>) -> Self {
+        let worst = |a, b| match (a, b) {
+            (Self::Write, _) | (_, Self::Write) => Self::Write,
+            (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
+            (Self::Read, Self::Read) => Self::Read,
+        };
+        all.into_iter().reduce(worst).unwrap_or(Self::Unknown)
+    }
 }
 
-/// Reads are only those that a source confirms.
+/// Reads are only those that a source confirms. Judges one service by its number and class; a request that carries
+/// others is looked into by [`plan::effects`](crate::plan::effects).
 pub fn classify(service: ServiceCode, class: u16) -> Access {
     let Some(row) = service_row(class, service) else { return Access::Unknown };
     match row.access {

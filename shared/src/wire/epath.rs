@@ -1,6 +1,6 @@
-//! Padded EPATH: logical segments in their smallest form, and port segments.
+//! Padded EPATH: logical segments in their smallest form, port segments, and names of tags.
 //!
-//! Top three bits of a segment: 000 port, 001 logical. Source: OpENer `cipepath.h`, Omron W506 8-4.
+//! Top three bits of a segment: 000 port, 001 logical; 0x91 is a name. Source: OpENer `cipepath.h`, Omron W506 8-4.
 //!
 //! A port segment: `port and flags | [address length] | [UINT extended port] | link address | [00]`. Bits 3..0 are the
 //! port (15: an extended one follows), bit 4 says that the link address is longer than one byte. The length does not
@@ -9,6 +9,7 @@
 use alloc::vec::Vec;
 
 use super::cursor::{DecodeError, DecodeErrorKind, Reader};
+use super::symbol::SymbolSegment;
 
 /// A sequence of segments. Its size on the wire is counted in 16-bit words.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,6 +24,8 @@ pub enum Segment {
     Logical(LogicalSegment),
     /// One hop of a route.
     Port(PortSegment),
+    /// A part of a tag's name.
+    Symbol(SymbolSegment),
 }
 
 /// A logical segment: what it addresses, and its number.
@@ -163,15 +166,20 @@ impl Epath {
 
     /// Adds a logical segment.
     #[must_use]
-    pub fn then(mut self, kind: LogicalKind, value: u32) -> Self {
-        self.segments.push(Segment::Logical(LogicalSegment { kind, value }));
-        self
+    pub fn then(self, kind: LogicalKind, value: u32) -> Self {
+        self.with(Segment::Logical(LogicalSegment { kind, value }))
     }
 
     /// Adds a hop.
     #[must_use]
-    pub fn hop(mut self, port: PortSegment) -> Self {
-        self.segments.push(Segment::Port(port));
+    pub fn hop(self, port: PortSegment) -> Self {
+        self.with(Segment::Port(port))
+    }
+
+    /// Adds any segment.
+    #[must_use]
+    pub fn with(mut self, segment: Segment) -> Self {
+        self.segments.push(segment);
         self
     }
 
@@ -235,6 +243,9 @@ impl Segment {
         if byte & !(PORT | LONG_ADDRESS) == 0 && byte & PORT != 0 {
             return PortSegment::read(byte, reader).map(Self::Port);
         }
+        if byte == SymbolSegment::CODE {
+            return SymbolSegment::read(reader).map(Self::Symbol);
+        }
         let kind = LogicalKind::ALL.into_iter().find(|kind| kind.code() == byte & 0b1111_1100);
         let kind = kind.ok_or_else(|| unexpected(byte))?;
         let value = match byte & 0b11 {
@@ -255,6 +266,7 @@ impl Segment {
     fn encode(&self, out: &mut Vec<u8>) {
         match *self {
             Self::Port(ref port) => port.encode(out),
+            Self::Symbol(ref symbol) => symbol.encode(out),
             Self::Logical(LogicalSegment { kind, value }) => {
                 let [b0, b1, b2, b3] = value.to_le_bytes();
                 match value {
@@ -337,10 +349,10 @@ mod tests {
 
     #[test]
     fn an_unknown_segment_is_named_with_its_byte() {
-        let error = Epath::decode(&hex!("20 01 91 04")).unwrap_err();
+        let error = Epath::decode(&hex!("20 01 34 04")).unwrap_err();
         assert_eq!(
             (error.at, error.kind),
-            (2, DecodeErrorKind::Unexpected { field: "segment", found: 0x91 })
+            (2, DecodeErrorKind::Unexpected { field: "segment", found: 0x34 })
         );
     }
 }

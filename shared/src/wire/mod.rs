@@ -23,11 +23,13 @@ mod forward_open;
 mod list_identity;
 mod list_services;
 mod message_router;
+mod multiple_service;
 mod request_timeout;
 mod send_rr_data;
 mod send_unit_data;
 mod service;
 mod status;
+mod symbol;
 mod unconnected_send;
 mod value;
 
@@ -48,10 +50,12 @@ pub use self::forward_open::{
 pub use self::list_identity::{ListIdentityItem, SocketAddress};
 pub use self::list_services::ListServicesItem;
 pub use self::message_router::{AdditionalStatus, MessageRouterReply, MessageRouterRequest};
+pub use self::multiple_service::MultipleServicePacket;
 pub use self::request_timeout::RequestTimeout;
 pub use self::send_rr_data::{MAX_MESSAGE, SendRrData, UnconnectedMessage};
 pub use self::send_unit_data::{ConnectedItem, ConnectedMessage, ConnectionId, MAX_CONNECTED_MESSAGE};
 pub use self::service::ServiceCode;
 pub use self::status::GeneralStatus;
+pub use self::symbol::SymbolSegment;
 pub use self::unconnected_send::UnconnectedSend;
 pub use self::value::{CipType, CipValue, ShortString};
