@@ -7,6 +7,7 @@ use tokio::sync::Mutex;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use crate::audit::Audit;
 use crate::blocks::Blocks;
 use crate::http::AllowedHosts;
 
@@ -17,6 +18,8 @@ pub(crate) struct App {
     pub(crate) hosts: Arc<AllowedHosts>,
     /// What it is all about.
     pub(crate) blocks: Blocks,
+    /// Who did what.
+    pub(crate) audit: Audit,
     /// Held by the one search for devices that may be under way.
     pub(crate) discovery: Arc<Mutex<()>>,
     /// Ready when the relay stops.
@@ -27,10 +30,11 @@ pub(crate) struct App {
 
 impl App {
     /// Puts the parts together.
-    pub(crate) fn new(address: SocketAddr, blocks: Blocks, stop: CancellationToken) -> Self {
+    pub(crate) fn new(address: SocketAddr, blocks: Blocks, audit: Audit, stop: CancellationToken) -> Self {
         Self {
             hosts: Arc::new(AllowedHosts::new(address)),
             blocks,
+            audit,
             discovery: Arc::default(),
             stop,
             viewers: TaskTracker::new(),

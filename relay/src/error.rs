@@ -130,6 +130,9 @@ pub enum RunError {
     /// The database cannot be used.
     #[error("{0}")]
     Store(String),
+    /// The audit cannot even be opened.
+    #[error("{0}")]
+    Audit(String),
     /// The server failed.
     #[error("the server failed: {0}")]
     Serve(#[source] std::io::Error),

@@ -9,6 +9,7 @@ pub mod client;
 pub mod settings;
 
 mod app;
+mod audit;
 mod blocks;
 mod discover;
 mod draft;
@@ -33,6 +34,7 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
 use self::app::App;
+use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
 pub use self::error::RunError;
 pub use self::settings::Settings;
@@ -71,10 +73,13 @@ pub(crate) async fn serve(
     };
     let store = Store::open(database.as_deref()).await.map_err(no_store)?;
     let blocks = Blocks::open(store).await.map_err(no_store)?;
+    // After the store, which only one relay can have.
+    let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
+    note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
     tracing::info!(server.address = %address, data = ?settings.data, "listening");
 
     let stop = CancellationToken::new();
-    let app = App::new(address, blocks.clone(), stop.clone());
+    let app = App::new(address, blocks.clone(), audit.clone(), stop.clone());
     let viewers = app.viewers.clone();
     let server =
         axum::serve(listener, http::router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
@@ -90,6 +95,7 @@ pub(crate) async fn serve(
         tracing::info!("some viewers did not take their last message");
     }
     blocks.stop().await;
+    note(&audit, &Record::new(Event::Stop, "relay", ""));
     match ended {
         Some(_) => Err(RunError::Stopped),
         None => match tokio::time::timeout(LAST_ANSWERS, server).await {
@@ -99,6 +105,15 @@ pub(crate) async fn serve(
             Err(_) => Ok(()),
         },
     }
+}
+
+/// Records the start or the end, and the end of the chain in the log, where it is out of reach of whoever reaches the
+/// data folder.
+fn note(audit: &Audit, record: &Record) {
+    // What cannot be recorded has been logged, and stops writes.
+    let _ = audit.append(record);
+    let state = audit.state();
+    tracing::info!(audit.records = state.records, audit.head = state.head.hash, "audit");
 }
 
 /// Answers on a listener as one simulated device, until this future is dropped.

@@ -125,7 +125,7 @@ pub enum SettingsError {
 }
 
 /// The user's folder for application data.
-fn default_data() -> Option<PathBuf> {
+pub(crate) fn default_data() -> Option<PathBuf> {
     let folder =
         |variable: &str| std::env::var_os(variable).filter(|text| !text.is_empty()).map(PathBuf::from);
     let base = if cfg!(windows) {

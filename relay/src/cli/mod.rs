@@ -1,5 +1,6 @@
 //! Everything that a person types: `cipdeck serve`, and the commands that talk to a device from here.
 
+mod audit;
 mod check;
 mod discover;
 mod exit;
@@ -56,6 +57,8 @@ enum Command {
     Run(run::Run),
     /// Find devices on the network: who answers to ListIdentity.
     Discover(discover::Discover),
+    /// Who did what: verify the relay's records, or go on after a break.
+    Audit(audit::Audit),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
 }
@@ -85,6 +88,7 @@ impl Cli {
             Command::Send(send) => send.execute().await,
             Command::Run(run) => run.execute().await,
             Command::Discover(discover) => discover.execute().await,
+            Command::Audit(audit) => audit.execute().await,
             Command::Check(check) => check.execute(),
         }
     }

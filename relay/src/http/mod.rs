@@ -1,6 +1,7 @@
 //! REST under `/api/v1`, and the page under everything else. docs/REST.md describes the interface.
 
 mod assets;
+mod audit;
 mod blocks;
 mod commands;
 mod discovery;
@@ -29,6 +30,9 @@ pub(crate) fn router(app: App) -> Router {
         .route("/ws", get(ws::upgrade))
         .route("/check", post(commands::check))
         .route("/discover", post(discovery::discover))
+        .route("/audit", get(audit::list))
+        .route("/audit/state", get(audit::state))
+        .route("/audit.jsonl", get(audit::export))
         .route("/targets", get(targets::list))
         .route("/blocks", get(blocks::list).post(blocks::create))
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))

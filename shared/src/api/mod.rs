@@ -1,11 +1,13 @@
 //! The types of REST and WebSocket. Described with examples in docs/REST.md and docs/WEBSOCKET.md.
 
+mod audit;
 mod discovery;
 mod rest;
 mod status;
 mod target;
 mod ws;
 
+pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
