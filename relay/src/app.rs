@@ -9,6 +9,7 @@ use tokio_util::task::TaskTracker;
 
 use crate::audit::Audit;
 use crate::blocks::Blocks;
+use crate::history::History;
 use crate::http::AllowedHosts;
 
 /// The parts of the relay, shared by all requests.
@@ -20,6 +21,8 @@ pub(crate) struct App {
     pub(crate) blocks: Blocks,
     /// Who did what.
     pub(crate) audit: Audit,
+    /// What has happened.
+    pub(crate) history: History,
     /// Held by the one search for devices that may be under way.
     pub(crate) discovery: Arc<Mutex<()>>,
     /// Ready when the relay stops.
@@ -30,11 +33,18 @@ pub(crate) struct App {
 
 impl App {
     /// Puts the parts together.
-    pub(crate) fn new(address: SocketAddr, blocks: Blocks, audit: Audit, stop: CancellationToken) -> Self {
+    pub(crate) fn new(
+        address: SocketAddr,
+        blocks: Blocks,
+        audit: Audit,
+        history: History,
+        stop: CancellationToken,
+    ) -> Self {
         Self {
             hosts: Arc::new(AllowedHosts::new(address)),
             blocks,
             audit,
+            history,
             discovery: Arc::default(),
             stop,
             viewers: TaskTracker::new(),

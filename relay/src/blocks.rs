@@ -12,6 +12,7 @@ use tokio::sync::Mutex;
 use crate::capture;
 use crate::draft::{Draft, normalised};
 use crate::error::ApiError;
+use crate::history::Recorder;
 use crate::hub::Hub;
 use crate::runner::Runner;
 use crate::store::{Change, Store, StoreError};
@@ -31,8 +32,8 @@ struct Inner {
 
 impl Blocks {
     /// Loads what is stored. Every IN is FALSE, except where a read resumes.
-    pub(crate) async fn open(store: Store) -> Result<Self, StoreError> {
-        let hub = Arc::new(Hub::new());
+    pub(crate) async fn open(store: Store, recorder: Recorder) -> Result<Self, StoreError> {
+        let hub = Arc::new(Hub::recording(recorder));
         let runner = Runner::start(Arc::clone(&hub) as Arc<_>);
         let all = store.load().await?;
         for stored in &all {

@@ -14,6 +14,7 @@ mod blocks;
 mod discover;
 mod draft;
 mod error;
+mod history;
 mod http;
 mod hub;
 mod permit;
@@ -37,6 +38,7 @@ use self::app::App;
 use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
 pub use self::error::RunError;
+use self::history::History;
 pub use self::settings::Settings;
 use self::store::Store;
 
@@ -72,14 +74,15 @@ pub(crate) async fn serve(
         None => RunError::Store(format!("{error}")),
     };
     let store = Store::open(database.as_deref()).await.map_err(no_store)?;
-    let blocks = Blocks::open(store).await.map_err(no_store)?;
+    let history = History::open(settings.data.as_deref(), settings.history).await;
+    let blocks = Blocks::open(store, history.recorder()).await.map_err(no_store)?;
     // After the store, which only one relay can have.
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
     note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
     tracing::info!(server.address = %address, data = ?settings.data, "listening");
 
     let stop = CancellationToken::new();
-    let app = App::new(address, blocks.clone(), audit.clone(), stop.clone());
+    let app = App::new(address, blocks.clone(), audit.clone(), history.clone(), stop.clone());
     let viewers = app.viewers.clone();
     let server =
         axum::serve(listener, http::router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
@@ -95,6 +98,7 @@ pub(crate) async fn serve(
         tracing::info!("some viewers did not take their last message");
     }
     blocks.stop().await;
+    history.close().await;
     note(&audit, &Record::new(Event::Stop, "relay", ""));
     match ended {
         Some(_) => Err(RunError::Stopped),

@@ -26,6 +26,36 @@ pub struct Settings {
     pub log: String,
     /// How log records are written.
     pub log_format: LogFormat,
+    /// What is kept of runs.
+    pub history: HistorySettings,
+}
+
+/// What is kept of runs: `[history]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct HistorySettings {
+    /// FALSE keeps nothing.
+    pub enabled: bool,
+    /// MB (1,048,576 bytes) that `history.sqlite` may take: 1..=1,000,000. The oldest go first.
+    pub max_mb: u32,
+    /// Days that a run is kept: 1..=36,500.
+    pub max_days: u32,
+}
+
+impl Default for HistorySettings {
+    fn default() -> Self {
+        Self { enabled: true, max_mb: 512, max_days: 30 }
+    }
+}
+
+impl HistorySettings {
+    fn checked(self) -> Result<Self, SettingsError> {
+        let rows = [("max_mb", self.max_mb, 1_000_000), ("max_days", self.max_days, 36_500)];
+        match rows.into_iter().find(|(_, value, max)| !(1..=*max).contains(value)) {
+            Some((key, value, max)) => Err(SettingsError::History { key, value, max }),
+            None => Ok(self),
+        }
+    }
 }
 
 /// How log records are written to stderr.
@@ -51,6 +81,8 @@ pub struct Given {
     pub log: Option<String>,
     /// `log_format = "json"`
     pub log_format: Option<LogFormat>,
+    /// `[history]`
+    pub history: Option<HistorySettings>,
 }
 
 impl Settings {
@@ -61,6 +93,7 @@ impl Settings {
             data: None,
             log: DEFAULT_LOG.to_owned(),
             log_format: LogFormat::default(),
+            history: HistorySettings::default(),
         }
     }
 
@@ -77,6 +110,7 @@ impl Settings {
             data: Some(data),
             log: flags.log.or(file.log).unwrap_or_else(|| DEFAULT_LOG.to_owned()),
             log_format: flags.log_format.or(file.log_format).unwrap_or_default(),
+            history: flags.history.or(file.history).unwrap_or_default().checked()?,
         })
     }
 
@@ -118,6 +152,16 @@ pub enum SettingsError {
         path: PathBuf,
         /// Where and what.
         source: Box<toml::de::Error>,
+    },
+    /// A limit of the history that cannot be.
+    #[error("history.{key} is {value}; it may be 1 to {max}. To keep nothing: history.enabled = false")]
+    History {
+        /// Which key.
+        key: &'static str,
+        /// What it says.
+        value: u32,
+        /// What it may say.
+        max: u32,
     },
     /// Neither a flag nor a home folder.
     #[error("no folder for data: this user has no home folder; give one with --data")]
@@ -161,15 +205,36 @@ mod tests {
     }
 
     #[test]
+    fn the_limits_of_the_history_are_checked_and_a_wrong_key_is_named() {
+        let of = |text: &str| {
+            let file = Given::parse(&format!("data = \"plant\"\n[history]\n{text}"))
+                .map_err(|error| error.to_string())?;
+            let settings = Settings::resolve(Given::default(), file).map_err(|error| error.to_string())?;
+            Ok(settings.history)
+        };
+        assert_eq!(of("max_mb = 64"), Ok(HistorySettings { max_mb: 64, ..HistorySettings::default() }));
+        assert_eq!(of("enabled = false").map(|history| history.enabled), Ok(false));
+        for (text, named) in
+            [("max_mb = 0", "max_mb"), ("max_days = 36501", "max_days"), ("max_gb = 1", "max_gb")]
+        {
+            let refused: Result<HistorySettings, String> = of(text);
+            assert!(refused.as_ref().is_err_and(|error| error.contains(named)), "{refused:?}");
+        }
+    }
+
+    #[test]
     fn every_key_is_documented() {
         let text = include_str!("../../docs/CONFIGURATION.md");
-        for key in ["listen", "data", "log", "log_format"] {
+        for key in
+            ["listen", "data", "log", "log_format", "history.enabled", "history.max_mb", "history.max_days"]
+        {
             assert!(text.contains(&format!("| `{key}` |")), "docs/CONFIGURATION.md does not describe {key}");
         }
         // The example in the document holds every key and is accepted as it stands.
         let example = text.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let given = Given::parse(example).unwrap();
-        let Given { listen, data, log, log_format } = given;
+        let Given { listen, data, log, log_format, history } = given;
         assert!(listen.is_some() && data.is_some() && log.is_some() && log_format.is_some());
+        assert_eq!(history, Some(HistorySettings::default()), "the example shows the defaults");
     }
 }

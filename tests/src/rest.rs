@@ -24,6 +24,8 @@ pub struct Reply {
 impl Rest {
     /// A client of the relay at an address like `127.0.0.1:8818`.
     pub fn new(address: impl std::fmt::Display) -> Self {
+        // The relay's libraries leave the choice to the program. Somebody else may have chosen already.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         Self { client: Client::new(), base: format!("http://{address}") }
     }
 

@@ -32,8 +32,13 @@ impl Serve {
             Ok(file) => file.unwrap_or_default(),
             Err(error) => return Exit::usage(&error),
         };
-        let flags =
-            Given { listen: self.listen, data: self.data, log: logging.log, log_format: logging.log_format };
+        let flags = Given {
+            listen: self.listen,
+            data: self.data,
+            log: logging.log,
+            log_format: logging.log_format,
+            ..Given::default()
+        };
         let settings = match Settings::resolve(flags, file) {
             Ok(settings) => settings,
             Err(error) => return Exit::usage(&error),

@@ -8,6 +8,7 @@ mod discovery;
 mod extract;
 mod guard;
 mod health;
+mod history;
 mod targets;
 
 use axum::Router;
@@ -33,6 +34,10 @@ pub(crate) fn router(app: App) -> Router {
         .route("/audit", get(audit::list))
         .route("/audit/state", get(audit::state))
         .route("/audit.jsonl", get(audit::export))
+        .route("/history", get(history::list))
+        .route("/history.csv", get(history::csv))
+        .route("/history/trend", get(history::trend))
+        .route("/history/state", get(history::state))
         .route("/targets", get(targets::list))
         .route("/blocks", get(blocks::list).post(blocks::create))
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))

@@ -2,6 +2,7 @@
 
 mod audit;
 mod discovery;
+mod history;
 mod rest;
 mod status;
 mod target;
@@ -9,6 +10,10 @@ mod ws;
 
 pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
+pub use self::history::{
+    HistoryBucket, HistoryDropped, HistoryHealth, HistoryLoss, HistoryPage, HistoryRange, HistoryRun,
+    HistoryState, HistoryTrend, HistoryValue,
+};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
 };

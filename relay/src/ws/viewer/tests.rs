@@ -9,6 +9,7 @@ use tokio_util::sync::PollSender;
 
 use super::*;
 use crate::draft::Draft;
+use crate::history::Recorder;
 use crate::store::Store;
 
 /// A viewer's end of a socket that is made of channels.
@@ -23,7 +24,7 @@ struct Page {
 impl Page {
     /// Opened, with hello and the first snapshot taken.
     async fn open() -> Self {
-        let blocks = Blocks::open(Store::open(None).await.unwrap()).await.unwrap();
+        let blocks = Blocks::open(Store::open(None).await.unwrap(), Recorder::default()).await.unwrap();
         let mut page = Self::of(blocks);
         assert!(matches!(page.next().await, ServerMessage::Hello { protocol: 1, .. }));
         let ServerMessage::Snapshot { seq: 1, .. } = page.next().await else { panic!("a snapshot") };
@@ -175,7 +176,7 @@ async fn changes_come_at_most_every_50_ms_and_a_slow_viewer_gets_the_newest_only
 
 #[tokio::test(start_paused = true)]
 async fn a_viewer_that_reads_nothing_is_left_behind() {
-    let blocks = Blocks::open(Store::open(None).await.unwrap()).await.unwrap();
+    let blocks = Blocks::open(Store::open(None).await.unwrap(), Recorder::default()).await.unwrap();
     let page = Page::of(blocks);
     // Time passes by itself while everybody waits.
     page.serving.await.unwrap();
