@@ -3,26 +3,32 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use cipdeck_shared::api::Role;
 use tokio::sync::Mutex;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 use crate::audit::Audit;
 use crate::blocks::Blocks;
-use crate::history::History;
 use crate::http::AllowedHosts;
+use crate::permit::Policy;
+use crate::store::Store;
 
 /// The parts of the relay, shared by all requests.
 #[derive(Clone, Debug)]
 pub(crate) struct App {
     /// Who may call.
     pub(crate) hosts: Arc<AllowedHosts>,
+    /// What is allowed.
+    pub(crate) policy: Arc<Policy>,
+    /// The database.
+    pub(crate) store: Store,
     /// What it is all about.
     pub(crate) blocks: Blocks,
     /// Who did what.
     pub(crate) audit: Audit,
-    /// What has happened.
-    pub(crate) history: History,
+    /// Who acts who has not signed in, if anybody may.
+    pub(crate) local: Option<Role>,
     /// Held by the one search for devices that may be under way.
     pub(crate) discovery: Arc<Mutex<()>>,
     /// Ready when the relay stops.
@@ -31,20 +37,31 @@ pub(crate) struct App {
     pub(crate) viewers: TaskTracker,
 }
 
+/// What is opened before anybody is answered.
+#[derive(Clone, Debug)]
+pub(crate) struct Parts {
+    pub(crate) policy: Arc<Policy>,
+    pub(crate) store: Store,
+    pub(crate) blocks: Blocks,
+}
+
 impl App {
     /// Puts the parts together.
     pub(crate) fn new(
         address: SocketAddr,
-        blocks: Blocks,
-        audit: Audit,
-        history: History,
+        parts: Parts,
+        local: Option<Role>,
         stop: CancellationToken,
     ) -> Self {
+        let Parts { policy, store, blocks } = parts;
+        let audit = policy.audit.clone();
         Self {
             hosts: Arc::new(AllowedHosts::new(address)),
+            policy,
+            store,
             blocks,
             audit,
-            history,
+            local,
             discovery: Arc::default(),
             stop,
             viewers: TaskTracker::new(),

@@ -3,18 +3,23 @@
 use std::future::Future;
 use std::sync::Arc;
 
-use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, TargetStatus, findings};
+use cipdeck_shared::api::{
+    BlockStatus, Checked, ExchangeView, ReadValue, TargetStatus, WriteTicket, Written, findings,
+};
 use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::BlockView;
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use tokio::sync::Mutex;
 
+use crate::actor::Actor;
+use crate::audit::Event;
 use crate::capture;
 use crate::draft::{Draft, normalised};
 use crate::error::ApiError;
-use crate::history::Recorder;
 use crate::hub::Hub;
-use crate::runner::Runner;
+use crate::permit::{Confirmed, Offer, Order, Policy, record};
+use crate::ritual;
+use crate::runner::{Guard, Refused, Runner};
 use crate::store::{Change, Store, StoreError};
 
 /// All blocks. Clones share them.
@@ -25,6 +30,7 @@ pub(crate) struct Blocks(Arc<Inner>);
 struct Inner {
     store: Store,
     runner: Runner,
+    policy: Arc<Policy>,
     hub: Arc<Hub>,
     /// Held from the store to the viewers, so that everybody sees changes in the order in which they were stored.
     edit: Mutex<()>,
@@ -32,25 +38,25 @@ struct Inner {
 
 impl Blocks {
     /// Loads what is stored. Every IN is FALSE, except where a read resumes.
-    pub(crate) async fn open(store: Store, recorder: Recorder) -> Result<Self, StoreError> {
-        let hub = Arc::new(Hub::recording(recorder));
-        let runner = Runner::start(Arc::clone(&hub) as Arc<_>);
+    pub(crate) async fn open(store: Store, policy: Arc<Policy>, guard: Guard) -> Result<Self, StoreError> {
+        let hub = Arc::new(Hub::new());
+        let runner = Runner::guarded(Arc::clone(&hub) as Arc<_>, guard);
         let all = store.load().await?;
         for stored in &all {
             let Block { id, revision, config } = &stored.block;
             hub.put(stored.block.clone());
-            runner.put(*id, *revision, plan(config));
+            runner.put(*id, &config.name, *revision, plan(config));
         }
         for stored in all.iter().filter(|stored| stored.input && stored.block.config.resume) {
             // Without a plan there is nothing to resume; a plan that resumes only reads.
             if plan(&stored.block.config).is_ok_and(|plan| plan.resume())
-                && let Err(refused) = runner.set_in(stored.block.id, true, None)
+                && let Err(refused) = runner.set_in(stored.block.id, true, Some(Order::read(Actor::relay())))
             {
                 tracing::warn!(block = %stored.block.id, %refused, "not resumed");
             }
         }
         tracing::info!(blocks = all.len(), "loaded");
-        Ok(Self(Arc::new(Inner { store, runner, hub, edit: Mutex::new(()) })))
+        Ok(Self(Arc::new(Inner { store, runner, policy, hub, edit: Mutex::new(()) })))
     }
 
     /// What viewers look at.
@@ -92,12 +98,14 @@ impl Blocks {
     }
 
     /// Stores a new block.
-    pub(crate) async fn create(&self, draft: Draft) -> Result<Block, ApiError> {
+    pub(crate) async fn create(&self, actor: &Actor, draft: Draft) -> Result<Block, ApiError> {
         let (config, plan) = accepted(draft.config)?;
+        let actor = actor.clone();
         self.edit(|inner| async move {
             let block = inner.store.insert(config).await?;
             inner.hub.put(block.clone());
-            inner.runner.put(block.id, block.revision, Ok(plan));
+            inner.runner.put(block.id, &block.config.name, block.revision, Ok(plan));
+            inner.note(Event::BlockCreated, &actor, &block);
             tracing::info!(block = %block.id, name = block.config.name, "created");
             Ok(block)
         })
@@ -105,7 +113,7 @@ impl Blocks {
     }
 
     /// Replaces a block; it acts at the next trigger.
-    pub(crate) async fn replace(&self, id: BlockId, draft: Draft) -> Result<Block, ApiError> {
+    pub(crate) async fn replace(&self, actor: &Actor, id: BlockId, draft: Draft) -> Result<Block, ApiError> {
         let Draft { id: claimed, revision, config } = draft;
         if claimed.is_some_and(|claimed| claimed != String::from(id)) {
             return Err(ApiError::Unreadable(format!("the body is about another block than {id}")));
@@ -116,14 +124,16 @@ impl Blocks {
             Ok(accepted) => accepted,
             Err(refused) => return Err(self.stale(id, revision).unwrap_or(refused)),
         };
+        let actor = actor.clone();
         self.edit(|inner| async move {
             let block = done(id, inner.store.replace(id, revision, config).await?)?;
             if block.config.resume {
                 let input = inner.runner.view(id).is_some_and(|view| view.input);
                 inner.store.set_input(id, input).await?;
             }
-            inner.runner.put(id, block.revision, Ok(plan));
+            inner.runner.put(id, &block.config.name, block.revision, Ok(plan));
             inner.hub.put(block.clone());
+            inner.note(Event::BlockChanged, &actor, &block);
             tracing::info!(block = %id, revision = block.revision, "changed");
             Ok(block)
         })
@@ -131,39 +141,119 @@ impl Blocks {
     }
 
     /// Cancels and deletes a block.
-    pub(crate) async fn delete(&self, id: BlockId, revision: u64) -> Result<(), ApiError> {
+    pub(crate) async fn delete(&self, actor: &Actor, id: BlockId, revision: u64) -> Result<(), ApiError> {
+        let actor = actor.clone();
         self.edit(|inner| async move {
-            done(id, inner.store.delete(id, revision).await?)?;
+            let block = done(id, inner.store.delete(id, revision).await?)?;
             inner.runner.remove(id);
             inner.hub.remove(id);
+            inner.note(Event::BlockDeleted, &actor, &block);
             tracing::info!(block = %id, "deleted");
             Ok(())
         })
         .await
     }
 
-    /// One message. The status at DN or ER.
-    pub(crate) async fn run(&self, id: BlockId, confirm: Option<u64>) -> Result<BlockStatus, ApiError> {
+    /// The first half of a write: what is there, what will be there, and the ticket for the second half.
+    pub(crate) async fn offer(
+        &self,
+        actor: &Actor,
+        id: BlockId,
+        revision: u64,
+    ) -> Result<WriteTicket, ApiError> {
+        let (runner, policy) = (&self.0.runner, &self.0.policy);
+        let block = self.block(id)?;
+        if block.revision != revision {
+            return Err(ApiError::Stale(Box::new(block)));
+        }
+        let plan = plan(&block.config).map_err(|all| ApiError::Findings(findings(&all)))?;
+        if !plan.access().may_write() {
+            return Err(ApiError::Unreadable(format!("{id} only reads: it is run without a ticket")));
+        }
+        let order = Order { actor: actor.clone(), confirmed: policy.hypothetical(revision) };
+        runner.ask(id, &order)?;
+        let reader = ritual::reader(&block.config);
+        let old = match &reader {
+            Some(reader) => self.read(actor, &block, reader.clone()).await,
+            None => Err("no service reads what this one writes".to_owned()),
+        };
+        let new = reader.and_then(|reader| ritual::wanted(&reader, &block.config));
+        let offer = Offer { revision, request: Arc::clone(plan.bytes()), old: old.clone().ok(), new };
+        Ok(policy.offer(actor, id, &offer, old.err()).map_err(Refused::from)?)
+    }
+
+    /// One message. The status at DN or ER; after a write with what is there then.
+    pub(crate) async fn run(
+        &self,
+        actor: &Actor,
+        id: BlockId,
+        ticket: Option<&str>,
+    ) -> Result<BlockStatus, ApiError> {
+        let order = self.order(actor, id, ticket)?;
+        let confirmed = order.confirmed.clone();
+        let config = self.block(id)?.config;
+        let ended = self.0.runner.run(id, Some(order)).await?;
+        let has_written = ended.view.q;
         // A block that has been deleted meanwhile has no status.
-        self.0.runner.run(id, confirm).await?.status.ok_or_else(|| ApiError::no_block(id))
+        let mut status = ended.status.ok_or_else(|| ApiError::no_block(id))?;
+        if let Some(confirmed) = confirmed.filter(|_| has_written) {
+            status.written = Some(self.read_back(actor, id, &config, confirmed).await);
+        }
+        Ok(status)
+    }
+
+    async fn read_back(
+        &self,
+        actor: &Actor,
+        id: BlockId,
+        config: &MsgCipGeneric,
+        confirmed: Confirmed,
+    ) -> Written {
+        let block = Block { id, revision: confirmed.revision, config: config.clone() };
+        let read = match ritual::reader(config) {
+            Some(reader) => self.read(actor, &block, reader).await.ok(),
+            None => None,
+        };
+        let written = ritual::written(confirmed.old, confirmed.new, read);
+        let record = record(Event::WriteReadBack, actor)
+            .with("block", id.to_string())
+            .with("ticket", confirmed.id)
+            .with_some("read_back", written.read_back.as_ref().map(|value| value.data.clone()))
+            .with_some("is_equal", written.is_equal);
+        self.0.policy.note(&record);
+        written
+    }
+
+    /// A read that belongs to a write.
+    async fn read(&self, actor: &Actor, block: &Block, plan: MessagePlan) -> Result<ReadValue, String> {
+        let order = Order::read(actor.clone());
+        let ended = self.0.runner.pass(&block.config.name, plan, order).await;
+        ended.map_err(|refused| refused.to_string()).and_then(|ended| ritual::found(&ended))
+    }
+
+    fn order(&self, actor: &Actor, id: BlockId, ticket: Option<&str>) -> Result<Order, ApiError> {
+        let confirmed = ticket.map(|ticket| self.0.policy.redeem(ticket, actor, id)).transpose();
+        Ok(Order { actor: actor.clone(), confirmed: confirmed.map_err(Refused::from)? })
     }
 
     /// Sets IN.
     pub(crate) async fn set_in(
         &self,
+        actor: &Actor,
         id: BlockId,
         input: bool,
-        confirm: Option<u64>,
+        ticket: Option<&str>,
     ) -> Result<BlockStatus, ApiError> {
         let resumes = self.block(id)?.config.resume;
+        let order = Some(self.order(actor, id, ticket)?);
         if resumes {
             self.edit(|inner| async move {
-                inner.runner.set_in(id, input, confirm)?;
+                inner.runner.set_in(id, input, order)?;
                 Ok(inner.store.set_input(id, input).await?)
             })
             .await?;
         } else {
-            self.0.runner.set_in(id, input, confirm)?;
+            self.0.runner.set_in(id, input, order)?;
         }
         self.status(id)
     }
@@ -172,6 +262,11 @@ impl Blocks {
     pub(crate) fn cancel(&self, id: BlockId) -> Result<BlockStatus, ApiError> {
         self.0.runner.cancel(id)?;
         self.status(id)
+    }
+
+    /// The lists have changed.
+    pub(crate) fn review(&self) {
+        self.0.runner.review();
     }
 
     /// Ends everything that runs, then closes the database.
@@ -200,6 +295,21 @@ impl Blocks {
             Ok(block) => Some(ApiError::Stale(Box::new(block))),
             Err(unknown) => Some(unknown),
         }
+    }
+}
+
+impl Inner {
+    /// What may be sent has changed.
+    fn note(&self, event: Event, actor: &Actor, block: &Block) {
+        let config = &block.config;
+        let request = plan(config).map(|plan| write_hex(plan.bytes())).ok();
+        let record = record(event, actor)
+            .with("block", block.id.to_string())
+            .with("name", config.name.clone())
+            .with("revision", block.revision)
+            .with("target", config.target_cfg.path.clone())
+            .with_some("request", request);
+        self.policy.note(&record);
     }
 }
 

@@ -77,7 +77,7 @@ impl Client {
 
     /// Starts without messages; the tap hears every byte.
     pub(crate) fn tapped(tap: Option<Arc<dyn Tap>>) -> Self {
-        Self { runner: Runner::tapped(Arc::new(Nobody), tap), last: Arc::default() }
+        Self { runner: Runner::unguarded(Arc::new(Nobody), tap), last: Arc::default() }
     }
 
     /// A message that can be sent, or what is wrong with it; nothing is sent yet.
@@ -89,7 +89,7 @@ impl Client {
     /// A message that has been planned already.
     pub fn planned(&self, plan: MessagePlan) -> Message {
         let block = BlockId(self.last.fetch_add(1, Ordering::Relaxed) + 1);
-        self.runner.put(block, REVISION, Ok(plan));
+        self.runner.put(block, "", REVISION, Ok(plan));
         Message { runner: self.runner.clone(), block }
     }
 
@@ -102,8 +102,8 @@ impl Client {
 impl Message {
     /// Sends it once and waits for its end, which may be a failure. A message goes on when this future is dropped.
     pub async fn run(&mut self) -> Result<Answer, NotStarted> {
-        // Whoever wrote the program knows what it sends.
-        let ended = self.runner.run(self.block, Some(REVISION)).await.map_err(|refused| match refused {
+        // Whoever wrote the program knows what it sends, and acts from their own machine.
+        let ended = self.runner.run(self.block, None).await.map_err(|refused| match refused {
             Refused::Busy => NotStarted::Busy,
             Refused::Unavailable | Refused::UnknownBlock | Refused::NotPermitted(_) => NotStarted::Stopped,
         })?;

@@ -7,7 +7,6 @@ use axum::response::{IntoResponse, Response};
 use cipdeck_shared::api::{Finding, Problem, ProblemCode};
 use cipdeck_shared::config::{Block, BlockId};
 
-use crate::history::HistoryError;
 use crate::runner::Refused;
 use crate::store::StoreError;
 
@@ -17,7 +16,10 @@ pub(crate) enum ApiError {
     /// Not JSON, or not the JSON that is expected here.
     #[error("{0}")]
     Unreadable(String),
-    /// Who asks may not, or a write that nobody has confirmed.
+    /// Nobody has signed in, or the session has ended.
+    #[error("{0}")]
+    SignedOut(String),
+    /// Who asks may not, or not now.
     #[error("{0}")]
     NotPermitted(String),
     /// No such address, no such block.
@@ -52,6 +54,7 @@ impl ApiError {
     const fn kind(&self) -> (StatusCode, ProblemCode, &'static str) {
         match self {
             Self::Unreadable(_) => (StatusCode::BAD_REQUEST, ProblemCode::Unreadable, "Unreadable"),
+            Self::SignedOut(_) => (StatusCode::UNAUTHORIZED, ProblemCode::SignedOut, "Signed out"),
             Self::NotPermitted(_) => (StatusCode::FORBIDDEN, ProblemCode::NotPermitted, "Not permitted"),
             Self::NotFound(_) => (StatusCode::NOT_FOUND, ProblemCode::NotFound, "Not found"),
             Self::Busy(_) => (StatusCode::CONFLICT, ProblemCode::Busy, "Busy"),
@@ -114,15 +117,6 @@ impl From<StoreError> for ApiError {
     }
 }
 
-impl From<HistoryError> for ApiError {
-    fn from(error: HistoryError) -> Self {
-        match error {
-            HistoryError::Closed => Self::Unavailable(error.to_string()),
-            error @ HistoryError::Sqlite(_) => Self::Internal(error.to_string()),
-        }
-    }
-}
-
 /// Why the relay cannot start or had to stop.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -143,6 +137,9 @@ pub enum RunError {
     /// The audit cannot even be opened.
     #[error("{0}")]
     Audit(String),
+    /// A line of the list of targets makes no sense.
+    #[error("the lists cannot be used: {0}")]
+    List(String),
     /// The server failed.
     #[error("the server failed: {0}")]
     Serve(#[source] std::io::Error),
@@ -165,6 +162,7 @@ mod tests {
         };
         for error in [
             ApiError::Unreadable(String::new()),
+            ApiError::SignedOut(String::new()),
             ApiError::NotPermitted(String::new()),
             ApiError::NotFound(String::new()),
             ApiError::Busy(String::new()),

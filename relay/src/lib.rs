@@ -3,6 +3,7 @@
 //! It moves bytes and time and decides nothing about the protocol. [`run`] is the whole server; [`cli`] is everything
 //! that a person types.
 
+mod actor;
 pub mod capture;
 pub mod cli;
 pub mod client;
@@ -14,10 +15,10 @@ mod blocks;
 mod discover;
 mod draft;
 mod error;
-mod history;
 mod http;
 mod hub;
 mod permit;
+mod ritual;
 mod runner;
 mod shutdown;
 mod simulate;
@@ -34,13 +35,14 @@ use cipdeck_shared::sim::{Device, SimConfig};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
-use self::app::App;
+use self::app::{App, Parts};
 use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
 pub use self::error::RunError;
-use self::history::History;
+use self::permit::{Gate, Policy, RuleError, permit};
+use self::runner::Guard;
 pub use self::settings::Settings;
-use self::store::Store;
+use self::store::{Store, StoredLists};
 
 /// How long viewers have to hear the end, and requests that are being answered after everything else has ended.
 const LAST_ANSWERS: Duration = Duration::from_secs(3);
@@ -64,6 +66,17 @@ pub(crate) async fn serve(
     shutdown: impl Future<Output = ()> + Send,
     ready: impl FnOnce() + Send,
 ) -> Result<(), RunError> {
+    serve_with(settings, listener, shutdown, ready, permit).await
+}
+
+/// [`serve`] with another decision, to show what this one is good for.
+async fn serve_with(
+    settings: Settings,
+    listener: TcpListener,
+    shutdown: impl Future<Output = ()> + Send,
+    ready: impl FnOnce() + Send,
+    gate: Gate,
+) -> Result<(), RunError> {
     let address = listener.local_addr().map_err(RunError::Listen)?;
     if !address.ip().is_loopback() {
         return Err(RunError::NotLoopback(address));
@@ -74,15 +87,20 @@ pub(crate) async fn serve(
         None => RunError::Store(format!("{error}")),
     };
     let store = Store::open(database.as_deref()).await.map_err(no_store)?;
-    let history = History::open(settings.data.as_deref(), settings.history).await;
-    let blocks = Blocks::open(store, history.recorder()).await.map_err(no_store)?;
     // After the store, which only one relay can have.
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
     note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
+    let stored = store.load_lists().await.map_err(no_store)?;
+    let policy = Arc::new(policy(&settings, audit.clone(), &stored)?);
+    policy.lists.listens_on(address);
+    let guard = Guard::with_gate(Arc::clone(&policy), gate);
+    let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard).await.map_err(no_store)?;
     tracing::info!(server.address = %address, data = ?settings.data, "listening");
 
     let stop = CancellationToken::new();
-    let app = App::new(address, blocks.clone(), audit.clone(), history.clone(), stop.clone());
+    let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
+    let parts = Parts { policy, store, blocks: blocks.clone() };
+    let app = App::new(address, parts, settings.local, stop.clone());
     let viewers = app.viewers.clone();
     let server =
         axum::serve(listener, http::router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
@@ -98,7 +116,8 @@ pub(crate) async fn serve(
         tracing::info!("some viewers did not take their last message");
     }
     blocks.stop().await;
-    history.close().await;
+    // It has heard of the stop.
+    let _ = keeper.await;
     note(&audit, &Record::new(Event::Stop, "relay", ""));
     match ended {
         Some(_) => Err(RunError::Stopped),
@@ -109,6 +128,25 @@ pub(crate) async fn serve(
             Err(_) => Ok(()),
         },
     }
+}
+
+/// What the configuration file and the administrators allow.
+fn policy(settings: &Settings, audit: Audit, stored: &StoredLists) -> Result<Policy, RunError> {
+    let policy = Policy::new(settings.data.as_deref(), audit, settings.limits.messages_per_second);
+    let wrong = |error: RuleError| RunError::List(error.to_string());
+    for target in &settings.allow.target {
+        policy.lists.add_target(None, target).map_err(wrong)?;
+    }
+    for write in &settings.allow.write {
+        policy.lists.add_write(None, write).map_err(wrong)?;
+    }
+    for (id, target) in &stored.targets {
+        policy.lists.add_target(Some(*id), target).map_err(wrong)?;
+    }
+    for (id, write) in &stored.writes {
+        policy.lists.add_write(Some(*id), write).map_err(wrong)?;
+    }
+    Ok(policy)
 }
 
 /// Records the start or the end, and the end of the chain in the log, where it is out of reach of whoever reaches the

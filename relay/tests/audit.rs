@@ -10,12 +10,12 @@ use std::process::{Command, Output};
 
 use cipdeck_relay::Settings;
 
-use self::common::Relay;
+use self::common::{Relay, local};
 
 #[tokio::test]
 async fn the_records_are_listed_told_about_and_exported() {
     let folder = tempfile::tempdir().unwrap();
-    let relay = Relay::start(Settings::stored_in(folder.path())).await;
+    let relay = Relay::start(local(Settings::stored_in(folder.path()))).await;
     let page = relay.ask("GET", "/api/v1/audit?event=start", "").await.json();
     assert_eq!(page["records"][0]["actor"], "relay", "{page}");
     assert_eq!(page["records"].as_array().unwrap().len(), 1);
@@ -35,8 +35,8 @@ async fn the_records_are_listed_told_about_and_exported() {
 async fn verify_finds_one_changed_byte_and_accept_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path();
-    Relay::start(Settings::stored_in(data)).await.stop().await;
-    let relay = Relay::start(Settings::stored_in(data)).await;
+    Relay::start(local(Settings::stored_in(data))).await.stop().await;
+    let relay = Relay::start(local(Settings::stored_in(data))).await;
     relay.ask("GET", "/api/v1/health", "").await;
     let unbroken = audit(&["verify"], data);
     assert!(said(&unbroken).starts_with("3 records, unbroken from "), "{unbroken:?}");
@@ -51,7 +51,7 @@ async fn verify_finds_one_changed_byte_and_accept_goes_on() {
     assert_eq!(said(&broken), "broken: line 2: its content does not match its hash\n");
     assert_eq!(audit(&["accept"], data).status.code(), Some(2), "no relay has found it yet");
 
-    let relay = Relay::start(Settings::stored_in(data)).await;
+    let relay = Relay::start(local(Settings::stored_in(data))).await;
     let state = relay.ask("GET", "/api/v1/audit/state", "").await.json();
     assert_eq!(state["writable"], false, "{state}");
     assert!(state["trouble"].as_str().unwrap().contains("cipdeck audit accept"), "{state}");
@@ -67,7 +67,7 @@ async fn verify_finds_one_changed_byte_and_accept_goes_on() {
 #[tokio::test]
 async fn an_exported_file_is_verified_without_its_folder() {
     let folder = tempfile::tempdir().unwrap();
-    Relay::start(Settings::stored_in(folder.path())).await.stop().await;
+    Relay::start(local(Settings::stored_in(folder.path()))).await.stop().await;
     let copy = folder.path().join("copy.jsonl");
     fs::copy(folder.path().join("audit.jsonl"), &copy).unwrap();
     let output =

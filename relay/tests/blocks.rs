@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use cipdeck_relay::Settings;
 use serde_json::{Value, json};
 
-use self::common::Relay;
+use self::common::{Relay, local};
 
 /// Asks the demo device for its name.
 fn name() -> Value {
@@ -59,7 +59,7 @@ async fn until(relay: &Relay, path: &str, is_wanted: impl Fn(&Value) -> bool) ->
 
 #[tokio::test]
 async fn a_block_is_stored_run_changed_and_deleted() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let block = create(&relay, &name()).await;
     assert_eq!((&block["id"], &block["revision"]), (&json!("b1"), &json!(1)));
     assert_eq!(relay.ask("GET", "/api/v1/blocks", "").await.json(), json!([block]));
@@ -102,7 +102,7 @@ async fn a_block_is_stored_run_changed_and_deleted() {
 
 #[tokio::test]
 async fn bad_input_is_a_problem_and_nothing_is_stored() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     for (pointer, value, field) in [
         ("/AppCfg/Service", json!(300), "AppCfg.Service"),
         ("/AppCfg/Instance", json!(-1), "AppCfg.Instance"),
@@ -153,7 +153,7 @@ async fn bad_input_is_a_problem_and_nothing_is_stored() {
 
 #[tokio::test]
 async fn checking_stores_nothing() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let good = relay.ask("POST", "/api/v1/check", &name().to_string()).await.json();
     assert_eq!(good, json!({"findings": [], "request": "0e03200124013007"}));
     let bad = with(name(), "/AppCfg/Service", 300);
@@ -165,26 +165,40 @@ async fn checking_stores_nothing() {
 
 #[tokio::test]
 async fn a_write_is_sent_only_when_its_revision_was_confirmed() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let output =
         with(with(with(name(), "/AppCfg/Class", 4), "/AppCfg/Instance", 150), "/AppCfg/Attribute", 3);
     create(&relay, &output).await;
     create(&relay, &write("A5")).await;
-    for body in ["", "{}", r#"{"confirm_write":2}"#] {
+    for body in ["", "{}", r#"{"ticket":"0123"}"#] {
         let reply = relay.ask("POST", "/api/v1/blocks/b2/run", body).await;
         assert_eq!(reply.problem(), (403, "not_permitted".to_owned()), "{body}");
     }
     let reply = relay.ask("POST", "/api/v1/blocks/b2/in", r#"{"IN":true}"#).await;
     assert_eq!(reply.problem(), (403, "not_permitted".to_owned()));
     assert_eq!(post(&relay, "b1/run", "").await["ResData"], "00".repeat(32));
-    assert_eq!(post(&relay, "b2/run", r#"{"confirm_write":1}"#).await["Q"], true);
+    let asked = relay.ask("POST", "/api/v1/blocks/b2/write", r#"{"revision":1}"#).await;
+    assert_eq!(asked.problem(), (403, "not_permitted".to_owned()), "without a write window");
+    assert_eq!(relay.ask("POST", "/api/v1/window", r#"{"minutes":1}"#).await.status, 200);
+    let stale = relay.ask("POST", "/api/v1/blocks/b2/write", r#"{"revision":2}"#).await;
+    assert_eq!(stale.problem(), (409, "stale_revision".to_owned()));
+    let offer = post(&relay, "b2/write", r#"{"revision":1}"#).await;
+    assert_eq!(
+        (&offer["old"]["data"], &offer["new"]["data"]),
+        (&json!("00".repeat(32)), &json!("a5".repeat(32)))
+    );
+    let command = json!({ "ticket": offer["ticket"] }).to_string();
+    let done = post(&relay, "b2/run", &command).await;
+    assert_eq!((&done["Q"], &done["written"]["is_equal"]), (&json!(true), &json!(true)), "{done}");
+    let again = relay.ask("POST", "/api/v1/blocks/b2/run", &command).await;
+    assert_eq!(again.problem(), (403, "not_permitted".to_owned()), "a ticket is good once");
     assert_eq!(post(&relay, "b1/run", "").await["ResData"], "a5".repeat(32));
     relay.stop().await;
 }
 
 #[tokio::test]
 async fn a_cyclic_block_runs_until_in_falls_and_is_busy_for_others() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let mut cyclic = name();
     cyclic["CtrlCfg"] = json!({"TriggerType": 5});
     create(&relay, &cyclic).await;
@@ -201,7 +215,7 @@ async fn a_cyclic_block_runs_until_in_falls_and_is_busy_for_others() {
 #[tokio::test]
 async fn blocks_survive_a_restart_and_only_reads_that_ask_for_it_resume() {
     let folder = tempfile::tempdir().unwrap();
-    let relay = Relay::start(Settings::stored_in(folder.path())).await;
+    let relay = Relay::start(local(Settings::stored_in(folder.path()))).await;
     let mut stored = with(name(), "/name", "resumes");
     stored["Resume"] = json!(true);
     stored["CtrlCfg"] = json!({"TriggerType": 5, "Cancel": true});
@@ -218,7 +232,7 @@ async fn blocks_survive_a_restart_and_only_reads_that_ask_for_it_resume() {
     let before = relay.ask("GET", "/api/v1/blocks", "").await.body;
     relay.stop().await;
 
-    let relay = Relay::start(Settings::stored_in(folder.path())).await;
+    let relay = Relay::start(local(Settings::stored_in(folder.path()))).await;
     assert_eq!(relay.ask("GET", "/api/v1/blocks", "").await.body, before);
     until(&relay, "/api/v1/blocks/b1/status", |status| status["runs"].as_u64() > Some(1)).await;
     let other = relay.ask("GET", "/api/v1/blocks/b2/status", "").await.json();
@@ -229,7 +243,7 @@ async fn blocks_survive_a_restart_and_only_reads_that_ask_for_it_resume() {
 #[tokio::test]
 async fn stopping_answers_what_is_running() {
     let silent = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let path = format!("4,127.0.0.1:{}", silent.local_addr().unwrap().port());
     create(&relay, &with(name(), "/TargetCfg/Path", path)).await;
     let address = relay.address;

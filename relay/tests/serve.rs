@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use cipdeck_relay::{RunError, Settings};
 use tokio::net::TcpListener;
 
-use self::common::{Relay, request};
+use self::common::{Relay, local, request};
 
 fn problem(status: u16, code: &str) -> (u16, String) {
     (status, code.to_owned())
@@ -18,7 +18,7 @@ fn problem(status: u16, code: &str) -> (u16, String) {
 
 #[tokio::test]
 async fn the_page_and_the_interface_are_served_under_a_strict_policy() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     for path in ["/", "/monitor", "/api/v1/health"] {
         let reply = relay.ask("GET", path, "").await;
         assert_eq!(reply.status, 200, "{path}: {reply:?}");
@@ -39,7 +39,7 @@ async fn the_page_and_the_interface_are_served_under_a_strict_policy() {
 
 #[tokio::test]
 async fn an_unknown_address_is_a_problem_not_a_page() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     for (method, path) in [
         ("GET", "/api/v1/nothing"),
         ("GET", "/api/v2/health"),
@@ -56,7 +56,7 @@ async fn an_unknown_address_is_a_problem_not_a_page() {
 
 #[tokio::test]
 async fn a_foreign_host_or_origin_is_refused_everywhere() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let host = relay.address.to_string();
     for path in ["/", "/api/v1/health", "/api/v1/ws"] {
         for headers in [
@@ -78,7 +78,7 @@ async fn a_foreign_host_or_origin_is_refused_everywhere() {
 #[tokio::test]
 async fn a_listener_for_everybody_is_refused() {
     let listener = TcpListener::bind("0.0.0.0:0").await.unwrap();
-    let refused = cipdeck_relay::run(Settings::in_memory(), listener, std::future::pending()).await;
+    let refused = cipdeck_relay::run(local(Settings::in_memory()), listener, std::future::pending()).await;
     assert!(matches!(refused, Err(RunError::NotLoopback(_))), "{refused:?}");
 }
 

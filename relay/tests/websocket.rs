@@ -12,7 +12,7 @@ use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::protocol::frame::coding::CloseCode;
 use tokio_tungstenite::tungstenite::{Error, Message};
 
-use self::common::Relay;
+use self::common::{Relay, local};
 
 type Socket = tokio_tungstenite::WebSocketStream<tokio_tungstenite::MaybeTlsStream<tokio::net::TcpStream>>;
 
@@ -41,12 +41,13 @@ async fn close_code(socket: &mut Socket) -> CloseCode {
 
 #[tokio::test]
 async fn the_conversation_is_as_documented() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     let mut socket = connect(&relay, &[("origin", format!("http://{}", relay.address))]).await.unwrap();
     assert_eq!(
         next(&mut socket).await,
-        json!({"type":"hello","protocol":1,"relay":env!("CARGO_PKG_VERSION")})
+        json!({"type":"hello","protocol":2,"relay":env!("CARGO_PKG_VERSION")})
     );
+    assert_eq!(next(&mut socket).await, json!({"type":"access","window":null,"read_only":false}));
     assert_eq!(next(&mut socket).await, json!({"type":"snapshot","seq":1,"blocks":[],"statuses":[]}));
     let block = json!({
         "name": "name", "AppCfg": {"Service": 14, "Class": 1, "Instance": 1, "Attribute": 7},
@@ -80,7 +81,7 @@ async fn the_conversation_is_as_documented() {
 
 #[tokio::test]
 async fn a_foreign_page_cannot_connect() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     for (name, value) in
         [("origin", "http://foreign.example"), ("origin", "null"), ("host", "foreign.example")]
     {
@@ -95,7 +96,7 @@ async fn a_foreign_page_cannot_connect() {
 
 #[tokio::test]
 async fn messages_over_64_kib_close_with_1009() {
-    let relay = Relay::start(Settings::in_memory()).await;
+    let relay = Relay::start(local(Settings::in_memory())).await;
     for length in [64 * 1024 + 1, 200_000, 2_000_000] {
         let mut socket = connect(&relay, &[]).await.unwrap();
         // A relay that has closed already may break the write: what it said is still there to be read.

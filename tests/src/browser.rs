@@ -13,6 +13,7 @@ use tokio::sync::{Semaphore, SemaphorePermit};
 
 use crate::chromium::{capabilities, port};
 use crate::process::Process;
+use crate::rest::install_tls;
 use crate::wait::eventually;
 use crate::{PATIENCE, tools};
 
@@ -44,6 +45,7 @@ impl Journey {
     /// Opens a browser with a profile of its own at an address.
     pub async fn open(&self, who: &'static str, url: &str) -> Browser {
         let profile = TempDir::new().expect("a folder for the browser's profile");
+        install_tls();
         let driver = WebDriver::new(self.server.as_str(), capabilities(&profile)).await;
         let driver = driver.unwrap_or_else(|error| {
             panic!("Chromium does not start: {error}\n{}", self.chromedriver.output().join("\n"))

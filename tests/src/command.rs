@@ -51,10 +51,11 @@ pub struct Service {
 }
 
 impl Service {
-    /// `cipdeck serve` with its data in `folder`; `listen` is `127.0.0.1:0` for a free port.
+    /// `cipdeck serve` for whoever is at this machine, with its data in `folder`; `listen` is `127.0.0.1:0` for a free port.
     pub async fn serve(listen: &str, folder: &Path) -> Self {
         let folder = folder.to_str().expect("a path in UTF-8");
-        Self::start(&["serve", "--listen", listen, "--data", folder]).await
+        let more = ["--local", "engineer", "--allow", LOOPBACK];
+        Self::start(&[&["serve", "--listen", listen, "--data", folder], &more[..]].concat()).await
     }
 
     /// `cipdeck simulate` with more arguments.
@@ -78,3 +79,6 @@ fn listening_at(line: &str) -> Option<String> {
     let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ':')).unwrap_or(rest.len());
     Some(rest[..end].to_string())
 }
+
+/// The devices of the tests.
+pub const LOOPBACK: &str = "127.0.0.1:* via *";

@@ -4,12 +4,14 @@ use std::net::SocketAddr;
 use std::path::Path;
 
 use cipdeck_relay::{RunError, Settings};
+use cipdeck_shared::api::Role;
 use tempfile::TempDir;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
 
 use crate::PATIENCE;
+use crate::command::LOOPBACK;
 use crate::rest::Rest;
 use crate::viewer::Viewer;
 use crate::wait::within;
@@ -37,7 +39,11 @@ impl Relay {
         let listener = TcpListener::bind(("127.0.0.1", 0)).await.expect("a free port");
         let address = listener.local_addr().expect("the port that is bound");
         let (stop, stopped) = oneshot::channel();
-        let settings = Settings::stored_in(folder.path());
+        // Whoever is at this machine may do an engineer's work on the devices of the tests.
+        let settings = Settings::stored_in(folder.path())
+            .with_local(Role::Engineer)
+            .allowing(LOOPBACK)
+            .allowing("no-such-drive.invalid");
         let running = tokio::spawn(cipdeck_relay::run(settings, listener, async {
             let _ = stopped.await; // dropped counts, too
         }));

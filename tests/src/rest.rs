@@ -10,6 +10,11 @@ pub struct Rest {
     base: String,
 }
 
+/// The HTTP client wants to know who computes, also where nothing is encrypted. The second call changes nothing.
+pub fn install_tls() {
+    let _ = rustls::crypto::ring::default_provider().install_default();
+}
+
 /// An answer.
 #[derive(Clone, Debug)]
 pub struct Reply {
@@ -24,8 +29,7 @@ pub struct Reply {
 impl Rest {
     /// A client of the relay at an address like `127.0.0.1:8818`.
     pub fn new(address: impl std::fmt::Display) -> Self {
-        // The relay's libraries leave the choice to the program. Somebody else may have chosen already.
-        let _ = rustls::crypto::ring::default_provider().install_default();
+        install_tls();
         Self { client: Client::new(), base: format!("http://{address}") }
     }
 
@@ -70,6 +74,16 @@ impl Rest {
         let reply = self.post("blocks", block).await;
         assert!(matches!(reply.status, 200 | 201), "the block is stored: {reply:?}");
         reply.body["id"].as_str().expect("an id").to_string()
+    }
+
+    /// Opens a write window if there is none, and asks for the ticket of a write.
+    pub async fn ticket(&self, id: &str, revision: u64) -> String {
+        let opened = self.post("window", &serde_json::json!({})).await;
+        assert!(matches!(opened.status, 200 | 409), "a write window: {opened:?}");
+        let reply =
+            self.post(&format!("blocks/{id}/write"), &serde_json::json!({ "revision": revision })).await;
+        assert_eq!(reply.status, 200, "a ticket: {reply:?}");
+        reply.body["ticket"].as_str().expect("a ticket").to_string()
     }
 
     /// Runs a block once; its status at DN or ER.

@@ -19,6 +19,8 @@ pub struct Viewer {
     socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
     /// What `hello` said.
     pub hello: Value,
+    /// The newest `access`: the write window and the switch.
+    pub access: Value,
     /// `seq` of the newest snapshot or changes.
     pub seq: u64,
     /// Blocks by id.
@@ -39,6 +41,7 @@ impl Viewer {
         let mut viewer = Self {
             socket,
             hello: Value::Null,
+            access: Value::Null,
             seq: 0,
             blocks: BTreeMap::new(),
             statuses: BTreeMap::new(),
@@ -48,8 +51,11 @@ impl Viewer {
         };
         viewer.hello = viewer.next().await;
         assert_eq!(viewer.hello["type"], "hello", "the first message");
+        let access = viewer.next().await;
+        assert_eq!(access["type"], "access", "the second message");
+        viewer.take(&access);
         let snapshot = viewer.next().await;
-        assert_eq!(snapshot["type"], "snapshot", "the second message");
+        assert_eq!(snapshot["type"], "snapshot", "the third message");
         viewer.take(&snapshot);
         viewer
     }
@@ -173,6 +179,10 @@ impl Viewer {
             Some("answer") => {
                 let id = message["id"].as_str().expect("an answer has an id");
                 self.answers.insert(id.to_string(), message.clone());
+                return;
+            }
+            Some("access") => {
+                self.access = message.clone();
                 return;
             }
             other => panic!("a message of type {other:?}"),

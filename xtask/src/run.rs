@@ -1,10 +1,10 @@
 //! `cargo xtask run`: from a fresh clone to a page in the browser, with a simulated device beside it.
 
 use std::{
-    env,
+    env, fs,
     io::ErrorKind,
     net::{SocketAddr, TcpListener, TcpStream},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command},
     sync::mpsc::{Receiver, RecvTimeoutError, channel},
     time::{Duration, Instant},
@@ -54,18 +54,37 @@ pub(crate) fn all(report: &mut Report, preference: Preference, addresses: Addres
             simulate,
         )
     })?;
+    let demo = report.step("lay down the demo configuration", || demo_configuration(&data, simulate))?;
     let mut relay = report.step("start the relay", || {
         let mut command = cipdeck();
         command.arg("serve").args(["--listen", &listen.to_string()]).arg("--data").arg(&data);
+        command.arg("--config").arg(&demo);
         Running::start("cipdeck serve", &mut command, listen)
     })?;
     report.say(&format!("cipdeck is at     http://{listen}"));
     report.say(&format!("simulated device  {}   (as a block's Path)", block_path(simulate)));
     report.say(&format!("blocks are kept   in {}", data.display()));
+    report.say(
+        "demo              whoever is at this machine is an engineer, without signing in, and may reach the",
+    );
+    report.say(&format!("                  simulated device alone: {}", demo.display()));
     report.say("Ctrl-C stops all");
     wait(&stop, &mut [&mut relay, &mut device])?;
     report.step("stop the relay", || relay.stop())?;
     report.step("stop the simulated device", || device.stop())
+}
+
+/// What a real relay denies until an administrator allows it: acting without signing in, and a target.
+fn demo_configuration(data: &Path, simulate: SocketAddr) -> Result<PathBuf> {
+    fs::create_dir_all(data).with_context(|| format!("cannot make {}", data.display()))?;
+    let path = data.join("demo.toml");
+    let text = format!(
+        "# Written by cargo xtask run: for a trial on this machine, not for a plant.\n\n\
+         [local]\nrole = \"engineer\"\n\n\
+         [[allow.target]]\ntarget = \"{simulate} via *\"\nnote = \"demo: the simulated device\"\n"
+    );
+    fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(path)
 }
 
 /// A block's Path leaves the usual port out.

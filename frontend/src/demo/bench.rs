@@ -115,7 +115,8 @@ impl Bench {
                 }
             }
             Event::Wants(wants) => {
-                self.engine.permit(&wants, self.permitted.get(&wants.block).is_some(), now);
+                let is_permitted = self.permitted.get(&wants.block).is_some();
+                self.engine.permit(&wants, if is_permitted { Ok(()) } else { Err("") }, now);
             }
             // The built-in device is always there.
             Event::Target { .. } => {}

@@ -133,7 +133,10 @@ impl Relay {
 
     /// Runs a block once.
     pub fn run(&self, block: BlockId, confirm_write: Option<u64>, refused: Callback<Problem>) {
-        self.command(|id| ClientMessage::Run { id, block, confirm_write }, refused);
+        self.command(
+            |id| ClientMessage::Run { id, block, ticket: confirm_write.map(|revision| revision.to_string()) },
+            refused,
+        );
     }
 
     /// Sets IN.
@@ -144,7 +147,15 @@ impl Relay {
         confirm_write: Option<u64>,
         refused: Callback<Problem>,
     ) {
-        self.command(|id| ClientMessage::In { id, block, input, confirm_write }, refused);
+        self.command(
+            |id| ClientMessage::In {
+                id,
+                block,
+                input,
+                ticket: confirm_write.map(|revision| revision.to_string()),
+            },
+            refused,
+        );
     }
 
     /// Cancels what is running.

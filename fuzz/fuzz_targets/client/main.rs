@@ -132,7 +132,7 @@ impl World {
             if allowed {
                 self.wire.permitted(&wants);
             }
-            self.engine.permit(&wants, allowed, self.now);
+            self.engine.permit(&wants, if allowed { Ok(()) } else { Err("no") }, self.now);
             self.drain();
         }
     }

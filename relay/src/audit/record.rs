@@ -140,6 +140,8 @@ events! {
     WritePermitted = "write_permitted",
     /// A write has ended: what the device has answered.
     WriteEnded = "write_ended",
+    /// What was read after a write.
+    WriteReadBack = "write_read_back",
     /// A write was refused, and why.
     WriteDenied = "write_denied",
     /// A block is new.

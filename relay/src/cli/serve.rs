@@ -3,12 +3,13 @@
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use cipdeck_shared::api::{NewAllowedTarget, Role};
 use clap::Args;
 use tokio::net::TcpListener;
 
 use super::{Exit, Logging, say};
 use crate::error::RunError;
-use crate::settings::{Given, Settings};
+use crate::settings::{Allow, Given, Limits, Local, Settings};
 use crate::{shutdown, telemetry};
 
 /// The flags of `serve`; docs/CONFIGURATION.md describes them.
@@ -20,6 +21,12 @@ pub(super) struct Serve {
     /// Folder of the database. [default: cipdeck in your folder for application data]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
+    /// Whoever is at this machine acts as viewer, operator, engineer or admin, without signing in. Loopback only
+    #[arg(long, value_name = "ROLE", value_parser = role)]
+    local: Option<Role>,
+    /// A target that may be reached: an address, a network or a name, with :PORT or :*, and " via 1,0" or " via *"
+    #[arg(long, value_name = "TARGET")]
+    allow: Vec<String>,
     /// Configuration in TOML; flags override it.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -37,7 +44,9 @@ impl Serve {
             data: self.data,
             log: logging.log,
             log_format: logging.log_format,
-            ..Given::default()
+            local: self.local.map(|role| Local { role }),
+            allow: Allow { target: self.allow.into_iter().map(by_flag).collect(), write: Vec::new() },
+            limits: Limits::default(),
         };
         let settings = match Settings::resolve(flags, file) {
             Ok(settings) => settings,
@@ -51,6 +60,15 @@ impl Serve {
             Err(error) => Exit::internal(&error),
         }
     }
+}
+
+fn by_flag(target: String) -> NewAllowedTarget {
+    NewAllowedTarget { target, note: "--allow".to_owned() }
+}
+
+fn role(text: &str) -> Result<Role, String> {
+    let found = Role::ALL.into_iter().find(|role| role.word() == text);
+    found.ok_or_else(|| "one of viewer, operator, engineer, admin".to_owned())
 }
 
 async fn listen_and_run(settings: Settings) -> Result<(), RunError> {

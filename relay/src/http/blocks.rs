@@ -7,6 +7,7 @@ use axum::response::IntoResponse;
 use cipdeck_shared::api::{BlockStatus, ExchangeView};
 use cipdeck_shared::config::Block;
 
+use super::caller::Caller;
 use super::extract::{Id, Json, Revision};
 use crate::app::App;
 use crate::draft::Draft;
@@ -20,9 +21,10 @@ pub(super) async fn list(State(app): State<App>) -> Answer<Vec<Block>> {
 /// `POST blocks`
 pub(super) async fn create(
     State(app): State<App>,
+    Caller(actor): Caller,
     Json(draft): Json<Draft>,
 ) -> Result<impl IntoResponse, ApiError> {
-    let block = app.blocks.create(draft).await?;
+    let block = app.blocks.create(&actor, draft).await?;
     let location = format!("/api/v1/blocks/{}", block.id);
     Ok((StatusCode::CREATED, [(header::LOCATION, location)], Answer(block)))
 }
@@ -35,19 +37,21 @@ pub(super) async fn show(State(app): State<App>, Id(id): Id) -> Result<Answer<Bl
 /// `PUT blocks/{id}`
 pub(super) async fn replace(
     State(app): State<App>,
+    Caller(actor): Caller,
     Id(id): Id,
     Json(draft): Json<Draft>,
 ) -> Result<Answer<Block>, ApiError> {
-    app.blocks.replace(id, draft).await.map(Answer)
+    app.blocks.replace(&actor, id, draft).await.map(Answer)
 }
 
 /// `DELETE blocks/{id}?revision=3`
 pub(super) async fn delete(
     State(app): State<App>,
+    Caller(actor): Caller,
     Id(id): Id,
     Revision(revision): Revision,
 ) -> Result<StatusCode, ApiError> {
-    app.blocks.delete(id, revision).await?;
+    app.blocks.delete(&actor, id, revision).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 

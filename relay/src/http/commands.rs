@@ -4,6 +4,7 @@ use axum::Json as Answer;
 use axum::extract::State;
 use cipdeck_shared::api::{BlockStatus, Checked, InRequest, RunRequest};
 
+use super::caller::Caller;
 use super::extract::{Id, Json, OptionalJson};
 use crate::app::App;
 use crate::blocks;
@@ -13,19 +14,21 @@ use crate::error::ApiError;
 /// `POST blocks/{id}/in`: answers at once.
 pub(super) async fn set_in(
     State(app): State<App>,
+    Caller(actor): Caller,
     Id(id): Id,
     Json(request): Json<InRequest>,
 ) -> Result<Answer<BlockStatus>, ApiError> {
-    app.blocks.set_in(id, request.input, request.confirm_write).await.map(Answer)
+    app.blocks.set_in(&actor, id, request.input, request.ticket.as_deref()).await.map(Answer)
 }
 
 /// `POST blocks/{id}/run`: answers at DN or ER.
 pub(super) async fn run(
     State(app): State<App>,
+    Caller(actor): Caller,
     Id(id): Id,
     OptionalJson(request): OptionalJson<RunRequest>,
 ) -> Result<Answer<BlockStatus>, ApiError> {
-    app.blocks.run(id, request.confirm_write).await.map(Answer)
+    app.blocks.run(&actor, id, request.ticket.as_deref()).await.map(Answer)
 }
 
 /// `POST blocks/{id}/cancel`

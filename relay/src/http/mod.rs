@@ -1,27 +1,30 @@
 //! REST under `/api/v1`, and the page under everything else. docs/REST.md describes the interface.
 
+mod allow;
 mod assets;
 mod audit;
 mod blocks;
+mod caller;
 mod commands;
 mod discovery;
 mod extract;
 mod guard;
 mod health;
-mod history;
 mod targets;
+mod write;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware;
 use axum::response::Response;
-use axum::routing::{get, post};
+use axum::routing::{delete, get, post};
 
 use crate::app::App;
 use crate::error::ApiError;
 use crate::ws;
 
+pub(crate) use self::caller::Caller;
 pub(crate) use self::guard::AllowedHosts;
 
 /// Everything that the relay serves.
@@ -34,11 +37,13 @@ pub(crate) fn router(app: App) -> Router {
         .route("/audit", get(audit::list))
         .route("/audit/state", get(audit::state))
         .route("/audit.jsonl", get(audit::export))
-        .route("/history", get(history::list))
-        .route("/history.csv", get(history::csv))
-        .route("/history/trend", get(history::trend))
-        .route("/history/state", get(history::state))
         .route("/targets", get(targets::list))
+        .route("/window", get(write::show).post(write::open).delete(write::close))
+        .route("/read-only", get(write::read_only).put(write::set_read_only))
+        .route("/allow/targets", get(allow::targets).post(allow::add_target))
+        .route("/allow/targets/{id}", delete(allow::remove_target))
+        .route("/allow/writes", get(allow::writes).post(allow::add_write))
+        .route("/allow/writes/{id}", delete(allow::remove_write))
         .route("/blocks", get(blocks::list).post(blocks::create))
         .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
         .route("/blocks/{id}/status", get(blocks::status))
@@ -46,6 +51,7 @@ pub(crate) fn router(app: App) -> Router {
         .route("/blocks/{id}/exchange.pcapng", get(blocks::capture))
         .route("/blocks/{id}/in", post(commands::set_in))
         .route("/blocks/{id}/run", post(commands::run))
+        .route("/blocks/{id}/write", post(write::offer))
         .route("/blocks/{id}/cancel", post(commands::cancel))
         .fallback(unknown)
         .method_not_allowed_fallback(unknown);
@@ -56,6 +62,7 @@ pub(crate) fn router(app: App) -> Router {
         .fallback(assets::show)
         // Bodies are bounded where they are read.
         .layer(DefaultBodyLimit::disable())
+        .layer(middleware::from_fn_with_state(app.clone(), caller::identify))
         .layer(middleware::from_fn_with_state(app.clone(), guard::check))
         .layer(middleware::map_response(secure))
         .with_state(app)

@@ -2,12 +2,11 @@ use cipdeck_shared::config::MsgCipGeneric;
 use cipdeck_shared::engine::{Phase, StatusBits};
 
 use super::*;
-use crate::history::Recorder;
 
 const B1: BlockId = BlockId(1);
 
 fn hub(count: u32) -> Hub {
-    let hub = Hub::recording(Recorder::default());
+    let hub = Hub::new();
     for id in 1..=count {
         hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0") });
     }

@@ -12,14 +12,22 @@ use tokio::net::TcpStream;
 
 use super::clock::Clock;
 use super::trail::Ends;
+use crate::permit::{Denied, Lists};
 use crate::simulate;
 
 /// Bytes between the engine and the built-in device.
 const PIPE: usize = 64 * 1024;
 
 /// Opens a TCP connection. How long that may take is the engine's business: it gives up by dropping this future.
-pub(super) async fn open(endpoint: &Endpoint) -> Result<(TcpStream, Ends), (ConnectError, String)> {
-    let addresses = resolve(endpoint).await?;
+/// With lists, an address that has been checked is connected to: a name is not asked for again.
+pub(super) async fn open(
+    endpoint: &Endpoint,
+    lists: Option<&Lists>,
+) -> Result<(TcpStream, Ends), (ConnectError, String)> {
+    let addresses = match lists {
+        Some(lists) => admitted(endpoint, lists).await?,
+        None => resolve(endpoint).await?,
+    };
     let mut last = (ConnectError::Unresolved, format!("{} has no address", endpoint.host));
     for address in addresses {
         match connect(address).await {
@@ -63,6 +71,19 @@ pub(super) fn built_in_device() -> Arc<Mutex<Device>> {
     Arc::new(Mutex::new(Device::default()))
 }
 
+async fn admitted(endpoint: &Endpoint, lists: &Lists) -> Result<Vec<SocketAddr>, (ConnectError, String)> {
+    let denied = |denied: Denied| (ConnectError::NotPermitted, denied.to_string());
+    lists.allow_endpoint(endpoint).map_err(denied)?;
+    let Host::Name(name) = &endpoint.host else { return resolve(endpoint).await };
+    let ips = match lists.pinned(name) {
+        Some(ips) => ips,
+        None => resolve(endpoint).await?.iter().map(SocketAddr::ip).collect(),
+    };
+    // Pinned addresses are checked again, too: the port may be another one.
+    let ips = lists.pin(name, endpoint.port, ips).map_err(denied)?;
+    Ok(ips.into_iter().map(|ip| SocketAddr::new(ip, endpoint.port)).collect())
+}
+
 async fn resolve(endpoint: &Endpoint) -> Result<Vec<SocketAddr>, (ConnectError, String)> {
     match &endpoint.host {
         Host::Ip(ip) => Ok(vec![SocketAddr::new(Ipv4Addr::from(*ip).into(), endpoint.port)]),
@@ -94,7 +115,8 @@ mod tests {
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
         let port = listener.local_addr().unwrap().port();
         drop(listener);
-        let (error, detail) = open(&Endpoint { host: Host::Ip([127, 0, 0, 1]), port }).await.unwrap_err();
+        let (error, detail) =
+            open(&Endpoint { host: Host::Ip([127, 0, 0, 1]), port }, None).await.unwrap_err();
         assert_eq!(error, ConnectError::Refused);
         assert!(detail.contains("127.0.0.1"), "{detail}");
     }
@@ -102,7 +124,7 @@ mod tests {
     #[tokio::test]
     async fn an_unknown_name_is_unresolved() {
         let name = Host::Name("no-such-host.invalid".to_owned());
-        let (error, detail) = open(&Endpoint { host: name, port: 44818 }).await.unwrap_err();
+        let (error, detail) = open(&Endpoint { host: name, port: 44818 }, None).await.unwrap_err();
         assert_eq!(error, ConnectError::Unresolved);
         assert!(detail.contains("no-such-host.invalid"), "{detail}");
     }

@@ -27,6 +27,9 @@ impl Inner {
             Event::Finished { block, shot, view, exchange } => {
                 let (error_id, sub_error_id) = (view.status.error_id, view.status.sub_error_id);
                 tracing::debug!(%block, shot, error_id, sub_error_id, elapsed_us = view.elapsed_us, "ended");
+                if let Some(guard) = &self.guard {
+                    state.grants.ended(&guard.policy, block, shot, &view, &exchange);
+                }
                 let trace = state.carried.remove(&block).map(|trail| trail.trace());
                 let status = self.observer.finished(block, &view, &exchange, trace);
                 if let Some(run) = state.runs.remove(&(block, shot)) {
@@ -50,16 +53,23 @@ impl Inner {
     }
 
     fn ask(&self, wants: &Wants, state: &mut State, now: Instant) {
-        let verdict = (self.gate)(&state.grants, wants.block, wants.revision);
-        if let Err(denied) = verdict {
-            tracing::warn!(block = %wants.block, shot = wants.shot, revision = wants.revision, %denied, "not sent");
+        let Wants { block, shot, revision, link } = *wants;
+        let verdict = match &self.guard {
+            Some(guard) => state.grants.shot(guard.gate, &guard.policy, block, revision, shot),
+            None => Ok(()),
+        };
+        let Err(denied) = verdict else {
+            if let Some(trail) = state.trails.get(&link) {
+                trail.begin();
+                state.carried.insert(block, Arc::clone(trail));
+            }
+            return state.engine.permit(wants, Ok(()), now);
+        };
+        tracing::warn!(%block, shot, revision, %denied, "not sent");
+        state.engine.permit(wants, Err(&denied.to_string()), now);
+        if state.grants.stops(block, revision) {
+            // It would ask again and again, and start by itself in the next write window.
+            let _ = state.engine.set_in(block, false, now);
         }
-        if verdict.is_ok()
-            && let Some(trail) = state.trails.get(&wants.link)
-        {
-            trail.begin();
-            state.carried.insert(wants.block, Arc::clone(trail));
-        }
-        state.engine.permit(wants, verdict.is_ok(), now);
     }
 }

@@ -16,6 +16,7 @@ use super::{Inner, connect, driver};
 /// The runner's end. Dropping it drops the socket.
 #[derive(Debug)]
 pub(super) struct Socket {
+    pub(super) target: Target,
     wake: Arc<Notify>,
     _close: DropGuard,
 }
@@ -30,7 +31,8 @@ impl Socket {
 /// The two ends of a new connection: the handle, and the task to be spawned.
 pub(super) fn open(link: LinkId, target: Target, inner: Arc<Inner>) -> (Socket, impl Future<Output = ()>) {
     let (wake, closed) = (Arc::new(Notify::new()), inner.stop.child_token());
-    let socket = Socket { wake: Arc::clone(&wake), _close: closed.clone().drop_guard() };
+    let socket =
+        Socket { target: target.clone(), wake: Arc::clone(&wake), _close: closed.clone().drop_guard() };
     (socket, serve(link, target, inner, wake, closed))
 }
 
@@ -49,7 +51,7 @@ async fn serve(
                 let stream = connect::built_in(Arc::clone(&inner.device), inner.clock);
                 carry(stream, link, connect::built_in_ends(link), &inner, &wake).await
             }
-            Target::Network(endpoint) => match connect::open(endpoint).await {
+            Target::Network(endpoint) => match connect::open(endpoint, inner.lists()).await {
                 Ok((stream, ends)) => {
                     tracing::debug!(target.address = %endpoint, link = link.0, "connected");
                     carry(stream, link, ends, &inner, &wake).await

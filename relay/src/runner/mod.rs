@@ -34,7 +34,7 @@ use self::link::Socket;
 use self::trail::Trail;
 pub use self::trail::{Direction, Ends};
 pub(crate) use self::trail::{Tap, Trace};
-use crate::permit::{self, Denied, Grants};
+use crate::permit::{Denied, Former, Gate, Grants, Lists, Order, Policy, Sending, permit};
 
 /// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
 pub(crate) trait Observer: Send + Sync + 'static {
@@ -67,7 +67,7 @@ pub(crate) struct Ended {
 }
 
 /// Why a command was not carried out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Refused {
     /// No such block.
     #[error("there is no such block")]
@@ -75,7 +75,7 @@ pub(crate) enum Refused {
     /// A message is under way, or IN is TRUE.
     #[error("the block is busy or its IN is TRUE")]
     Busy,
-    /// It may write and has not been confirmed.
+    /// Who commands it may not, or not now.
     #[error("{0}")]
     NotPermitted(Denied),
     /// Nothing is started any more.
@@ -87,13 +87,30 @@ pub(crate) enum Refused {
 #[derive(Clone)]
 pub(crate) struct Runner(Arc<Inner>);
 
-/// The gate in front of every write to the wire.
-type Gate = fn(&Grants, BlockId, u64) -> Result<(), Denied>;
+/// What stands in front of every message.
+#[derive(Clone, Debug)]
+pub(crate) struct Guard {
+    policy: Arc<Policy>,
+    gate: Gate,
+}
+
+impl Guard {
+    /// The rules of a relay.
+    pub(crate) fn new(policy: Arc<Policy>) -> Self {
+        Self::with_gate(policy, permit)
+    }
+
+    /// With another decision, to show what this one is good for.
+    pub(crate) fn with_gate(policy: Arc<Policy>, gate: Gate) -> Self {
+        Self { policy, gate }
+    }
+}
 
 struct Inner {
     state: Mutex<State>,
     observer: Arc<dyn Observer>,
-    gate: Gate,
+    /// `None` for a command line that acts for the user of this machine.
+    guard: Option<Guard>,
     /// Records everything that goes over the sockets.
     tap: Option<Arc<dyn Tap>>,
     clock: Clock,
@@ -116,30 +133,35 @@ struct State {
     /// The connection that carries a block's message.
     carried: HashMap<BlockId, Arc<Trail>>,
     runs: HashMap<(BlockId, u64), oneshot::Sender<Ended>>,
+    /// Blocks for one message that nobody has stored.
+    passing: u32,
     /// When the timer will wake.
     armed: Option<Instant>,
     stopping: bool,
 }
 
+/// Ids for messages of their own, round and round.
+const MAX_PASSING: u32 = 65_536;
+
 /// How long sessions have for their farewell.
 const FAREWELL: Duration = Duration::from_secs(1);
 
 impl Runner {
-    /// Starts without blocks.
-    pub(crate) fn start(observer: Arc<dyn Observer>) -> Self {
-        Self::with_gate(observer, permit::permit, None)
+    /// Starts without blocks, behind a guard.
+    pub(crate) fn guarded(observer: Arc<dyn Observer>, guard: Guard) -> Self {
+        Self::start(observer, Some(guard), None)
     }
 
-    /// Starts without blocks; the tap hears every byte.
-    pub(crate) fn tapped(observer: Arc<dyn Observer>, tap: Option<Arc<dyn Tap>>) -> Self {
-        Self::with_gate(observer, permit::permit, tap)
+    /// Starts without blocks, for the user of this machine; the tap hears every byte.
+    pub(crate) fn unguarded(observer: Arc<dyn Observer>, tap: Option<Arc<dyn Tap>>) -> Self {
+        Self::start(observer, None, tap)
     }
 
-    fn with_gate(observer: Arc<dyn Observer>, gate: Gate, tap: Option<Arc<dyn Tap>>) -> Self {
+    fn start(observer: Arc<dyn Observer>, guard: Option<Guard>, tap: Option<Arc<dyn Tap>>) -> Self {
         let inner = Arc::new(Inner {
             state: Mutex::new(State { engine: Engine::with_originator(originator()), ..State::default() }),
             observer,
-            gate,
+            guard,
             tap,
             clock: Clock::start(),
             device: connect::built_in_device(),
@@ -153,11 +175,19 @@ impl Runner {
         Self(inner)
     }
 
-    /// Adds a block, or changes it from its next trigger on.
-    pub(crate) fn put(&self, block: BlockId, revision: u64, plan: Result<MessagePlan, Vec<Finding>>) {
+    /// Adds a block, or changes it from its next trigger on. `name` is what people call it.
+    pub(crate) fn put(
+        &self,
+        block: BlockId,
+        name: &str,
+        revision: u64,
+        plan: Result<MessagePlan, Vec<Finding>>,
+    ) {
         self.0.with(|state, now| {
-            let busy = state.engine.is_busy(block);
-            state.grants.put(block, revision, plan.as_ref().ok().map(MessagePlan::access), busy);
+            if self.0.guard.is_some() {
+                let busy = state.engine.is_busy(block);
+                state.grants.put(block, name, revision, plan.as_ref().ok().map(Sending::from), busy);
+            }
             state.engine.put(block, revision, plan, now);
         });
     }
@@ -171,11 +201,11 @@ impl Runner {
     }
 
     /// One message, whatever `TriggerType`. The message goes on when nobody waits for its end any more.
-    pub(crate) async fn run(&self, block: BlockId, confirm: Option<u64>) -> Result<Ended, Refused> {
+    pub(crate) async fn run(&self, block: BlockId, order: Option<Order>) -> Result<Ended, Refused> {
         let (sender, ended) = oneshot::channel();
         self.0.command(|state, now| {
-            state.permit(block, confirm)?;
-            let shot = state.engine.run(block, now).map_err(Refused::from)?;
+            let former = self.0.permit(state, block, order, true)?;
+            let shot = state.engine.run(block, now).map_err(|error| state.take_back(block, former, error))?;
             state.runs.insert((block, shot), sender);
             Ok(())
         })?;
@@ -183,12 +213,10 @@ impl Runner {
     }
 
     /// Sets IN.
-    pub(crate) fn set_in(&self, block: BlockId, input: bool, confirm: Option<u64>) -> Result<(), Refused> {
+    pub(crate) fn set_in(&self, block: BlockId, input: bool, order: Option<Order>) -> Result<(), Refused> {
         self.0.command(|state, now| {
-            if input {
-                state.permit(block, confirm)?;
-            }
-            state.engine.set_in(block, input, now).map_err(Refused::from)
+            let former = if input { self.0.permit(state, block, order, false)? } else { None };
+            state.engine.set_in(block, input, now).map_err(|error| state.take_back(block, former, error))
         })
     }
 
@@ -197,9 +225,42 @@ impl Runner {
         self.0.command(|state, now| state.engine.cancel(block, now).map_err(Refused::from))
     }
 
+    /// What somebody would hear who commanded a block.
+    pub(crate) fn ask(&self, block: BlockId, order: &Order) -> Result<(), Refused> {
+        let Some(guard) = &self.0.guard else { return Ok(()) };
+        let state = lock(&self.0.state);
+        state.grants.ask(guard.gate, &guard.policy, block, order).map_err(Refused::from)
+    }
+
+    /// One message of a block that is forgotten afterwards: a read that belongs to a write.
+    pub(crate) async fn pass(&self, name: &str, plan: MessagePlan, order: Order) -> Result<Ended, Refused> {
+        let block = self.0.with(|state, _| {
+            state.passing = state.passing.wrapping_add(1);
+            // From the end of the ids, which no database gets near.
+            BlockId(u32::MAX - state.passing % MAX_PASSING)
+        });
+        self.put(block, name, 1, Ok(plan));
+        // However this future ends, the block goes.
+        let _passing = Passing { runner: self, block };
+        self.run(block, Some(order)).await
+    }
+
     /// How a block looks, with all edges of its last message.
     pub(crate) fn view(&self, block: BlockId) -> Option<BlockView> {
         lock(&self.0.state).engine.view(block)
+    }
+
+    /// The lists have changed: what is no longer allowed is left at once, sessions that are kept alive, too.
+    pub(crate) fn review(&self) {
+        let Some(lists) = self.0.lists() else { return };
+        self.0.with(|state, _| {
+            let is_kept = |socket: &Socket| match &socket.target {
+                Target::BuiltIn => true,
+                Target::Network(endpoint) => lists.allow_endpoint(endpoint).is_ok(),
+            };
+            // Dropping the handle ends its task, which tells the engine.
+            state.sockets.retain(|_, socket| is_kept(socket));
+        });
     }
 
     /// All targets that blocks have been triggered for, and the ms since each was used.
@@ -239,6 +300,24 @@ impl Inner {
         call: impl FnOnce(&mut State, Instant) -> Result<T, Refused>,
     ) -> Result<T, Refused> {
         self.with(|state, now| if state.stopping { Err(Refused::Unavailable) } else { call(state, now) })
+    }
+
+    /// Asks for a command; the one that it replaces.
+    fn permit(
+        &self,
+        state: &mut State,
+        block: BlockId,
+        order: Option<Order>,
+        is_run: bool,
+    ) -> Result<Option<Former>, Refused> {
+        let Some(guard) = &self.guard else { return Ok(None) };
+        // Behind a guard nobody commands without a name.
+        let order = order.ok_or(Refused::NotPermitted(Denied::Gone))?;
+        Ok(Some(state.grants.command(guard.gate, &guard.policy, block, order, is_run)?))
+    }
+
+    fn lists(&self) -> Option<&Lists> {
+        self.guard.as_ref().map(|guard| &guard.policy.lists)
     }
 
     /// Calls the engine and carries out what it says.
@@ -282,15 +361,33 @@ fn originator() -> Originator {
 }
 
 impl State {
-    fn permit(&mut self, block: BlockId, confirm: Option<u64>) -> Result<(), Refused> {
-        self.grants.command(block, confirm).map_err(|denied| match denied {
-            Denied::Unknown => Refused::UnknownBlock,
-            denied => Refused::NotPermitted(denied),
-        })?;
-        if let Some(revision) = confirm {
-            tracing::info!(%block, revision, "confirmed by a person");
+    /// A command that the engine refuses leaves everything as it was.
+    fn take_back(&mut self, block: BlockId, former: Option<Former>, error: CommandError) -> Refused {
+        if let Some(former) = former {
+            self.grants.restore(block, former);
         }
-        Ok(())
+        error.into()
+    }
+}
+
+/// A block that is there for one message.
+struct Passing<'a> {
+    runner: &'a Runner,
+    block: BlockId,
+}
+
+impl Drop for Passing<'_> {
+    fn drop(&mut self) {
+        self.runner.remove(self.block);
+    }
+}
+
+impl From<Denied> for Refused {
+    fn from(denied: Denied) -> Self {
+        match denied {
+            Denied::Unknown => Self::UnknownBlock,
+            denied => Self::NotPermitted(denied),
+        }
     }
 }
 

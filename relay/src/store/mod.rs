@@ -2,6 +2,7 @@
 //!
 //! Nothing that was acknowledged is lost, not even by `kill -9`: WAL with `synchronous = FULL`.
 
+mod allow;
 mod blocks;
 mod error;
 mod schema;
@@ -9,9 +10,9 @@ mod writer;
 
 use std::path::Path;
 
+pub(crate) use self::allow::StoredLists;
 pub(crate) use self::blocks::Change;
 pub(crate) use self::error::StoreError;
-pub(crate) use self::schema::migrate;
 use self::writer::Writer;
 
 /// Handle to the database. Clones share it.

@@ -7,7 +7,8 @@ use rusqlite::Connection;
 use super::StoreError;
 
 /// One entry per version; `user_version` counts them.
-const MIGRATIONS: [&str; 1] = [include_str!("migrations/0001_blocks.sql")];
+const MIGRATIONS: &[&str] =
+    &[include_str!("migrations/0001_blocks.sql"), include_str!("migrations/0002_allow.sql")];
 
 /// How long a relay that is just ending may still hold the file.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -20,11 +21,10 @@ pub(super) fn prepare(connection: &mut Connection) -> Result<(), StoreError> {
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", true)?;
-    migrate(connection, &MIGRATIONS)
+    migrate(connection, MIGRATIONS)
 }
 
-/// Brings a database up to date, a version at a time.
-pub(crate) fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), StoreError> {
+fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), StoreError> {
     let version = connection.pragma_query_value(None, "user_version", |row| row.get::<_, u32>(0))?;
     let found = usize::try_from(version).unwrap_or(usize::MAX);
     let missing = migrations.get(found..).ok_or(StoreError::TooNew { found, known: migrations.len() })?;
@@ -47,7 +47,7 @@ mod tests {
         prepare(&mut connection).unwrap();
         prepare(&mut connection).unwrap();
         connection.pragma_update(None, "user_version", 99).unwrap();
-        let refused = migrate(&mut connection, &MIGRATIONS);
+        let refused = migrate(&mut connection, MIGRATIONS);
         assert!(matches!(refused, Err(StoreError::TooNew { found: 99, .. })), "{refused:?}");
     }
 

@@ -1,9 +1,11 @@
 //! What a viewer says, and what is answered.
 
-use cipdeck_shared::api::{Answer, ClientMessage, ServerMessage};
+use cipdeck_shared::api::{Answer, ClientMessage, Role, ServerMessage};
 
+use crate::actor::Actor;
 use crate::blocks::Blocks;
 use crate::error::ApiError;
+use crate::permit::Denied;
 
 /// Reads a message. What cannot be read is answered under its id, if it has one.
 pub(super) fn read(text: &str) -> Result<ClientMessage, Box<ServerMessage>> {
@@ -31,14 +33,26 @@ pub(super) fn id(message: &ClientMessage) -> &str {
     }
 }
 
+/// Whether the caller's role may say this at all; what a command sends is asked about when it is carried out.
+fn is_open_to(message: &ClientMessage, actor: &Actor) -> bool {
+    match message {
+        ClientMessage::Run { .. } | ClientMessage::Cancel { .. } | ClientMessage::In { .. } => {
+            actor.role().is_some_and(Role::may_send)
+        }
+    }
+}
+
 /// Carries a command out. A run is answered at DN or ER, everything else at once.
-pub(super) async fn carry_out(message: ClientMessage, blocks: Blocks) -> ServerMessage {
+pub(super) async fn carry_out(message: ClientMessage, actor: Actor, blocks: Blocks) -> ServerMessage {
     let id = id(&message).to_owned();
+    if !is_open_to(&message, &actor) {
+        return refuse(id, ApiError::NotPermitted(Denied::OnlyLooks.to_string()));
+    }
     let status = match message {
-        ClientMessage::Run { block, confirm_write, .. } => blocks.run(block, confirm_write).await,
+        ClientMessage::Run { block, ticket, .. } => blocks.run(&actor, block, ticket.as_deref()).await,
         ClientMessage::Cancel { block, .. } => blocks.cancel(block),
-        ClientMessage::In { block, input, confirm_write, .. } => {
-            blocks.set_in(block, input, confirm_write).await
+        ClientMessage::In { block, input, ticket, .. } => {
+            blocks.set_in(&actor, block, input, ticket.as_deref()).await
         }
     };
     match status {
@@ -68,7 +82,7 @@ mod tests {
             }
             kinds.push(kind);
         }
-        for kind in ["hello", "snapshot", "changes", "answer", "run", "cancel", "in"] {
+        for kind in ["hello", "access", "snapshot", "changes", "answer", "run", "cancel", "in"] {
             assert!(kinds.iter().any(|there| there == kind), "no example of {kind}");
         }
     }

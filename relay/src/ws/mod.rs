@@ -10,8 +10,10 @@ use axum::response::Response;
 use futures_util::StreamExt;
 use tokio_tungstenite::tungstenite::Error as TungsteniteError;
 
+use self::viewer::Seat;
 use crate::app::App;
 use crate::error::ApiError;
+use crate::http::Caller;
 
 /// Longest message that a viewer may send.
 const MAX_MESSAGE: usize = 64 * 1024;
@@ -23,6 +25,7 @@ const MAX_READ: usize = 1024 * 1024;
 /// Makes a viewer of the request. `Host` and `Origin` have been checked.
 pub(crate) async fn upgrade(
     State(app): State<App>,
+    Caller(actor): Caller,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response, ApiError> {
     let upgrade = upgrade.map_err(|rejection| {
@@ -31,7 +34,8 @@ pub(crate) async fn upgrade(
     let serve = move |socket: WebSocket| async move {
         let viewers = app.viewers.clone();
         let (sink, stream) = socket.split();
-        viewers.track_future(viewer::serve(sink, stream, app.blocks, app.stop, is_too_long)).await;
+        let seat = Seat { actor, blocks: app.blocks, policy: app.policy, stop: app.stop };
+        viewers.track_future(viewer::serve(sink, stream, seat, is_too_long)).await;
     };
     Ok(upgrade.max_message_size(MAX_READ).max_frame_size(MAX_READ).on_upgrade(serve))
 }

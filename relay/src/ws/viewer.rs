@@ -1,5 +1,6 @@
 //! One viewer: it gets what is new at most every 50 ms, and sends commands.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
@@ -10,9 +11,11 @@ use tokio::time::{Instant, sleep_until, timeout};
 use tokio_util::sync::CancellationToken;
 
 use super::{MAX_MESSAGE, command};
+use crate::actor::Actor;
 use crate::blocks::Blocks;
 use crate::error::ApiError;
 use crate::hub::{Cursor, Update};
+use crate::permit::Policy;
 
 /// Least time between two messages with changes.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -20,34 +23,58 @@ const PAUSE: Duration = Duration::from_millis(50);
 /// A viewer that takes nothing for so long is gone.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// The close code for somebody whose session has ended, from the range that is free for applications.
+const SIGNED_OUT: u16 = 4401;
+
 /// Commands of one viewer that may be under way at once.
 const MAX_COMMANDS: usize = 256;
 
+/// Who watches what.
+#[derive(Debug)]
+pub(super) struct Seat {
+    /// Who.
+    pub(super) actor: Actor,
+    /// What.
+    pub(super) blocks: Blocks,
+    /// Whether anything can be written.
+    pub(super) policy: Arc<Policy>,
+    /// Until the relay stops.
+    pub(super) stop: CancellationToken,
+}
+
 /// Serves a viewer until it leaves, stops reading, or the relay stops. Generic over the socket, so that tests need
 /// none.
-pub(super) async fn serve<S, R, E>(
-    sink: S,
-    mut stream: R,
-    blocks: Blocks,
-    stop: CancellationToken,
-    is_too_long: fn(&E) -> bool,
-) where
+pub(super) async fn serve<S, R, E>(sink: S, mut stream: R, seat: Seat, is_too_long: fn(&E) -> bool)
+where
     S: Sink<Message> + Unpin + Send,
     R: Stream<Item = Result<Message, E>> + Unpin + Send,
 {
-    let (mut version, mut viewer) = (blocks.hub().watch(), Viewer::new(sink));
+    let Seat { actor, blocks, policy, stop } = seat;
+    let (mut version, mut rules) = (blocks.hub().watch(), policy.watch());
+    let mut viewer = Viewer::new(sink);
     let (mut commands, mut next, mut is_behind) = (JoinSet::new(), Instant::now(), true);
     let hello =
         ServerMessage::Hello { protocol: PROTOCOL_VERSION, relay: env!("CARGO_PKG_VERSION").to_owned() };
     let mut end = viewer.say(&hello).await;
+    if end.is_ok() {
+        end = viewer.say(&ServerMessage::Access(policy.write_state())).await;
+    }
     while let Ok(()) = end {
         end = tokio::select! {
+            // Somebody who is locked out hears and sees nothing more, however much there is to say.
+            biased;
             () = stop.cancelled() => Err(End::Close(close_code::AWAY, "the relay stops")),
+            () = actor.gone() => Err(End::Close(SIGNED_OUT, "the session has ended: sign in again")),
+            changed = rules.changed() => match changed {
+                Ok(()) => viewer.say(&ServerMessage::Access(policy.write_state())).await,
+                Err(_) => Err(End::Gone),
+            },
             frame = stream.next() => match frame {
                 Some(Ok(frame)) => match read(frame) {
                     Ok(None) => Ok(()),
                     Ok(Some(message)) if commands.len() < MAX_COMMANDS => {
-                        commands.spawn(command::carry_out(message, blocks.clone()));
+                        actor.touch();
+                        commands.spawn(command::carry_out(message, actor.clone(), blocks.clone()));
                         Ok(())
                     }
                     Ok(Some(message)) => viewer.say(&too_many(&message)).await,

@@ -3,10 +3,16 @@
 use std::net::SocketAddr;
 
 use cipdeck_relay::{RunError, Settings};
+use cipdeck_shared::api::Role;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
+
+/// For whoever is at this machine, and for devices on it.
+pub(crate) fn local(settings: Settings) -> Settings {
+    settings.with_local(Role::Engineer).allowing("127.0.0.1:* via *")
+}
 
 /// A running relay.
 #[derive(Debug)]

@@ -1,22 +1,29 @@
 //! The types of REST and WebSocket. Described with examples in docs/REST.md and docs/WEBSOCKET.md.
 
+mod access;
+mod allow;
 mod audit;
 mod discovery;
-mod history;
 mod rest;
+mod secret;
 mod status;
 mod target;
+mod write;
 mod ws;
 
+pub use self::access::{
+    ActorKind, Caller, NewToken, NewUser, NewViewLink, PassView, PasswordChange, Role, SessionEntry,
+    SessionState, SessionView, SetUp, SignIn, TokenCreated, UserChange, UserView, ViewLinkCreated,
+};
+pub use self::allow::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllowedWrite};
 pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
-pub use self::history::{
-    HistoryBucket, HistoryDropped, HistoryHealth, HistoryLoss, HistoryPage, HistoryRange, HistoryRun,
-    HistoryState, HistoryTrend, HistoryValue,
-};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
 };
 pub use self::status::{BlockStatus, LastSuccess, MAX_EDGES};
 pub use self::target::{ConnectionStatus, TargetStatus};
+pub use self::write::{
+    NewWindow, ReadOnly, ReadValue, WindowView, WriteRequest, WriteState, WriteTicket, Written,
+};
 pub use self::ws::{ClientMessage, PROTOCOL_VERSION, ServerMessage};

@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::history::HistoryHealth;
 use super::status::BlockStatus;
 use crate::config::{Block, write_hex};
 use crate::engine::Exchange;
@@ -20,30 +19,27 @@ pub struct Health {
     pub version: String,
     /// How many blocks are stored.
     pub blocks: usize,
-    /// Whether runs are being kept.
-    #[serde(default)]
-    pub history: HistoryHealth,
 }
 
 /// `POST /api/v1/blocks/{id}/in`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InRequest {
     /// The new state of the input.
     #[serde(rename = "IN")]
     pub input: bool,
-    /// For a block that may write: the revision that a person has seen and confirmed.
+    /// For a block that may write: from `POST blocks/{id}/write`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub confirm_write: Option<u64>,
+    pub ticket: Option<String>,
 }
 
 /// `POST /api/v1/blocks/{id}/run`; an empty body is allowed for a read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
-    /// For a block that may write: the revision that a person has seen and confirmed.
+    /// For a block that may write: from `POST blocks/{id}/write`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub confirm_write: Option<u64>,
+    pub ticket: Option<String>,
 }
 
 /// `POST /api/v1/check` and `cipdeck check --json`.
@@ -160,6 +156,8 @@ pub struct Problem {
 pub enum ProblemCode {
     /// 400
     Unreadable,
+    /// 401: sign in first, or again.
+    SignedOut,
     /// 403
     NotPermitted,
     /// 404
@@ -172,6 +170,8 @@ pub enum ProblemCode {
     TooLarge,
     /// 422
     Findings,
+    /// 429: later.
+    TooMany,
     /// 500
     Internal,
     /// 503: the relay is stopping, or the block's run was ended by its deletion.
@@ -182,14 +182,16 @@ pub enum ProblemCode {
 
 impl ProblemCode {
     /// All that this version knows.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Unreadable,
+        Self::SignedOut,
         Self::NotPermitted,
         Self::NotFound,
         Self::Busy,
         Self::StaleRevision,
         Self::TooLarge,
         Self::Findings,
+        Self::TooMany,
         Self::Internal,
         Self::Unavailable,
     ];
@@ -198,12 +200,14 @@ impl ProblemCode {
     pub fn word(&self) -> &str {
         match self {
             Self::Unreadable => "unreadable",
+            Self::SignedOut => "signed_out",
             Self::NotPermitted => "not_permitted",
             Self::NotFound => "not_found",
             Self::Busy => "busy",
             Self::StaleRevision => "stale_revision",
             Self::TooLarge => "too_large",
             Self::Findings => "findings",
+            Self::TooMany => "too_many",
             Self::Internal => "internal",
             Self::Unavailable => "unavailable",
             Self::Other(word) => word,

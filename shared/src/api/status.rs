@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::write::Written;
 use crate::config::{BlockId, write_hex};
 use crate::engine::{BlockView, Cause, CipStatus, Phase, StatusBits};
 
@@ -55,6 +56,9 @@ pub struct BlockStatus {
     pub edges_dropped: u64,
     /// The last success.
     pub last: Option<LastSuccess>,
+    /// In the answer to a write that has been carried out: what was there, what is there now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub written: Option<Written>,
 }
 
 /// The last success of a block, kept while a new run clears `ResData`.
@@ -103,6 +107,7 @@ impl BlockStatus {
             edges: view.edges.clone(),
             edges_dropped: view.edges_dropped,
             last,
+            written: None,
         }
     }
 }

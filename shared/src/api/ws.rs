@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::rest::Answer;
 use super::status::BlockStatus;
 use super::target::TargetStatus;
+use super::write::WriteState;
 use crate::config::{Block, BlockId};
 
 /// The `protocol` in `hello`.
-pub const PROTOCOL_VERSION: u32 = 1;
+pub const PROTOCOL_VERSION: u32 = 2;
 
 /// What the relay says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +58,8 @@ pub enum ServerMessage {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         targets_removed: Vec<String>,
     },
+    /// Whether something may be written at all: first, and whenever it changes.
+    Access(WriteState),
     /// The answer to a command.
     Answer {
         /// The command's own id.
@@ -77,9 +80,9 @@ pub enum ClientMessage {
         id: String,
         /// Which block.
         block: BlockId,
-        /// For a block that may write: the revision that a person has seen and confirmed.
+        /// For a block that may write: from `POST blocks/{id}/write`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        confirm_write: Option<u64>,
+        ticket: Option<String>,
     },
     /// Cancel what is running.
     Cancel {
@@ -97,9 +100,9 @@ pub enum ClientMessage {
         /// The new state.
         #[serde(rename = "IN")]
         input: bool,
-        /// For a block that may write: the revision that a person has seen and confirmed.
+        /// For a block that may write: from `POST blocks/{id}/write`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        confirm_write: Option<u64>,
+        ticket: Option<String>,
     },
 }
 
@@ -111,7 +114,7 @@ mod tests {
     fn client_messages_are_as_documented() {
         for text in [
             r#"{"type":"run","id":"c1","block":"b7"}"#,
-            r#"{"type":"run","id":"c1","block":"b7","confirm_write":3}"#,
+            r#"{"type":"run","id":"c1","block":"b7","ticket":"9f2c"}"#,
             r#"{"type":"cancel","id":"c1","block":"b7"}"#,
             r#"{"type":"in","id":"c2","block":"b7","IN":true}"#,
         ] {

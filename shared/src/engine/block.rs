@@ -414,7 +414,7 @@ mod tests {
             (
                 "not permitted",
                 waiting,
-                Some(Failure::NotPermitted),
+                Some(Failure::NotPermitted(String::new())),
                 217,
                 0,
                 9,

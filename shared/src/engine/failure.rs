@@ -44,8 +44,8 @@ pub enum Failure {
     Invalid(u16, String),
     /// Cancelled by the user.
     Cancelled,
-    /// The relay did not permit the write.
-    NotPermitted,
+    /// The owner did not permit the message: why.
+    NotPermitted(String),
     /// Time ran out.
     Timeout,
 }
@@ -59,6 +59,8 @@ pub enum ConnectError {
     Unreachable,
     /// The name is unknown.
     Unresolved,
+    /// The owner did not permit a connection there.
+    NotPermitted,
 }
 
 /// "Unconnected request timed out": the target behind the router may have got it.
@@ -85,7 +87,7 @@ impl Failure {
             Self::TooSmall { .. } => (33, 48, 0),
             Self::Invalid(sub_error_id, _) => (33, *sub_error_id, 0),
             // The manual has no number for a refusal by us; for the block it is a cancelled message.
-            Self::Cancelled | Self::NotPermitted => (217, 0, 0),
+            Self::Cancelled | Self::NotPermitted(_) => (217, 0, 0),
         }
     }
 
@@ -109,6 +111,7 @@ impl Failure {
                     ConnectError::Refused => CauseKind::Refused,
                     ConnectError::Unreachable => CauseKind::Unreachable,
                     ConnectError::Unresolved => CauseKind::Unresolved,
+                    ConnectError::NotPermitted => CauseKind::NotPermitted,
                 };
                 Cause { detail: Some(detail.clone()), ..Cause::new(what) }
             }
@@ -132,7 +135,10 @@ impl Failure {
                 Cause { detail: Some(detail.clone()), ..Cause::new(CauseKind::Invalid) }
             }
             Self::Cancelled => cause(CauseKind::Cancelled),
-            Self::NotPermitted => Cause::new(CauseKind::NotPermitted),
+            Self::NotPermitted(why) => {
+                let detail = (!why.is_empty()).then(|| why.clone());
+                Cause { detail, ..Cause::new(CauseKind::NotPermitted) }
+            }
             Self::Timeout => cause(CauseKind::Timeout),
         }
     }

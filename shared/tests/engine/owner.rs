@@ -85,7 +85,7 @@ impl Owner {
                 Event::Wants(wants) => {
                     self.wants.push(wants);
                     if self.answers {
-                        self.engine.permit(&wants, self.allowed, self.now);
+                        self.engine.permit(&wants, if self.allowed { Ok(()) } else { Err("no") }, self.now);
                     }
                 }
                 Event::Changed { block, edge } => {
@@ -117,7 +117,7 @@ impl Owner {
     }
 
     pub(crate) fn permit(&mut self, wants: &Wants) {
-        self.engine.permit(wants, true, self.now);
+        self.engine.permit(wants, Ok(()), self.now);
         self.pump();
     }
 

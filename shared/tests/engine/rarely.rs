@@ -33,7 +33,7 @@ fn a_reply_that_comes_before_its_request_is_none() {
     owner.engine.run(A, owner.now).unwrap();
     while let Some(event) = owner.engine.poll_event() {
         if let Event::Wants(wants) = event {
-            owner.engine.permit(&wants, true, owner.now);
+            owner.engine.permit(&wants, Ok(()), owner.now);
             owner.engine.handle_input(link, &guess, owner.now);
         }
     }

@@ -213,7 +213,7 @@ impl World {
                     self.act(at + LATENCY, Action::DeviceHangsUp(link));
                 }
                 Event::Transmit { link } => self.transmit(link),
-                Event::Wants(wants) => self.engine.permit(&wants, true, self.now),
+                Event::Wants(wants) => self.engine.permit(&wants, Ok(()), self.now),
                 Event::Changed { .. } | Event::Target { .. } => {}
                 Event::Finished { block, view, .. } => {
                     let number = self.numbers[&block];

@@ -15,7 +15,7 @@ async fn a_write_that_nobody_has_confirmed_never_reaches_the_device() {
     let stranger = relay.rest.create(&unknown_service(&plc.path())).await;
     let mut viewer = relay.viewer().await;
     for id in [&id, &stranger] {
-        for body in [json!({}), json!({ "confirm_write": 2 }), json!({ "confirm_write": 0 })] {
+        for body in [json!({}), json!({ "ticket": "0123" }), json!({ "ticket": "" })] {
             relay.rest.post(&format!("blocks/{id}/run"), &body).await.is_problem(403, "not_permitted");
         }
         relay
@@ -46,9 +46,12 @@ async fn a_confirmed_write_is_sent_once() {
     let id = relay.rest.create(&block::set(&plc.path(), 4, 150, 3, "01020304")).await;
     let status = confirmed(&relay, &id, 1).await;
     assert_eq!((&status["Q"], &status["Status"]["StatusBits"]), (&json!(true), &json!(17)), "{status}");
-    assert_eq!(plc.messages(), [[0x10, 3, 0x20, 4, 0x24, 150, 0x30, 3, 1, 2, 3, 4]]);
+    let path = [3, 0x20, 4, 0x24, 150, 0x30, 3];
+    let write = [&[0x10], &path[..], &[1, 2, 3, 4]].concat();
+    let read = [&[0x0E], &path[..]].concat();
+    assert_eq!(plc.messages(), [read.clone(), write, read], "what was there, the write, what is there now");
     relay.rest.post(&format!("blocks/{id}/run"), &json!({})).await.is_problem(403, "not_permitted");
-    assert_eq!(plc.messages().len(), 1, "a confirmation is for one run");
+    assert_eq!(plc.messages().len(), 3, "a ticket is for one run");
 }
 
 #[tokio::test]
@@ -57,11 +60,17 @@ async fn a_change_after_the_confirmation_asks_again() {
     let plc = FakePlc::start(fake_plc::answering(&[])).await;
     let id = relay.rest.create(&block::set(&plc.path(), 4, 150, 3, "01")).await;
     let stored = relay.rest.get(&format!("blocks/{id}")).await.body;
+    let ticket = relay.rest.ticket(&id, 1).await;
     let changed = relay.rest.put(&format!("blocks/{id}"), &with(stored, "/ReqData", "ff")).await;
     assert_eq!(changed.status, 200, "{changed:?}");
-    let body = json!({ "confirm_write": 1 });
+    let body = json!({ "ticket": ticket });
     relay.rest.post(&format!("blocks/{id}/run"), &body).await.is_problem(403, "not_permitted");
-    assert_eq!(plc.messages().len(), 0);
+    relay
+        .rest
+        .post(&format!("blocks/{id}/write"), &json!({ "revision": 1 }))
+        .await
+        .is_problem(409, "stale_revision");
+    assert_eq!(writes(&plc), 0);
     assert_eq!(confirmed(&relay, &id, 2).await["Q"], true);
 }
 
@@ -81,10 +90,7 @@ async fn a_cyclic_read_that_is_changed_into_a_write_stops_there() {
     let refused = |status: &Value| status["cause"]["what"] == "not_permitted";
     let status = viewer.status_where("nobody has confirmed it", PATIENCE, &id, refused).await;
     assert_eq!((&status["phase"], &status["Status"]["ErrorID"]), (&json!("failed"), &json!(217)), "{status}");
-    let runs = status["runs"].as_u64();
-    viewer
-        .status_where("it is asked every time", PATIENCE, &id, |status| status["runs"].as_u64() > runs)
-        .await;
+    viewer.status_where("it does not try again", PATIENCE, &id, |status| status["IN"] == false).await;
     assert!(plc.messages().iter().all(|message| message[0] == 14), "only reads have arrived");
 }
 
@@ -98,7 +104,7 @@ async fn a_write_without_an_answer_is_not_sent_again() {
         let status = confirmed(&relay, &id, 1).await;
         assert_eq!(status["Status"]["ErrorID"], 55, "{name}: {status}");
         assert_eq!(status["cause"]["may_have_acted"], true, "{name}: {status}");
-        assert_eq!(plc.messages().len(), 1, "{name}");
+        assert_eq!(writes(&plc), 1, "{name}");
     }
 }
 
@@ -106,8 +112,8 @@ async fn a_write_without_an_answer_is_not_sent_again() {
 async fn a_write_is_sent_again_where_the_target_cannot_have_acted() {
     let relay = Relay::start().await;
     let plc = FakePlc::start(fake_plc::messages(|request| match request.number {
-        // It has forgotten the session.
-        1 => vec![Act::Send(encapsulate(
+        // It has forgotten the session after it was asked for what is there.
+        2 => vec![Act::Send(encapsulate(
             SEND_RR_DATA,
             request.frame.session(),
             0x64,
@@ -120,7 +126,10 @@ async fn a_write_is_sent_again_where_the_target_cannot_have_acted() {
     let id = relay.rest.create(&block::set(&plc.path(), 4, 150, 3, "01")).await;
     assert_eq!(confirmed(&relay, &id, 1).await["Q"], true);
     let commands: Vec<_> = plc.requests().iter().map(|request| request.frame.command()).collect();
-    assert_eq!(commands, [REGISTER_SESSION, SEND_RR_DATA, REGISTER_SESSION, SEND_RR_DATA]);
+    assert_eq!(
+        commands,
+        [REGISTER_SESSION, SEND_RR_DATA, SEND_RR_DATA, REGISTER_SESSION, SEND_RR_DATA, SEND_RR_DATA]
+    );
 }
 
 #[tokio::test]
@@ -130,7 +139,8 @@ async fn taking_back_in_needs_no_confirmation() {
     let block = with(block::set(&plc.path(), 4, 150, 3, "01"), "/CtrlCfg", json!({ "TriggerType": 50 }));
     let id = relay.rest.create(&block).await;
     let path = format!("blocks/{id}/in");
-    let reply = relay.rest.post(&path, &json!({ "IN": true, "confirm_write": 1 })).await;
+    let reply =
+        relay.rest.post(&path, &json!({ "IN": true, "ticket": relay.rest.ticket(&id, 1).await })).await;
     assert_eq!((reply.status, &reply.body["IN"]), (200, &json!(true)), "{reply:?}");
     let mut viewer = relay.viewer().await;
     let cycles = |status: &Value| status["runs"].as_u64() >= Some(3);
@@ -140,7 +150,8 @@ async fn taking_back_in_needs_no_confirmation() {
 }
 
 async fn confirmed(relay: &Relay, id: &str, revision: u64) -> Value {
-    let reply = relay.rest.post(&format!("blocks/{id}/run"), &json!({ "confirm_write": revision })).await;
+    let body = json!({ "ticket": relay.rest.ticket(id, revision).await });
+    let reply = relay.rest.post(&format!("blocks/{id}/run"), &body).await;
     assert_eq!(reply.status, 200, "{reply:?}");
     reply.body
 }
@@ -148,4 +159,8 @@ async fn confirmed(relay: &Relay, id: &str, revision: u64) -> Value {
 /// A service that no table knows counts as a write.
 fn unknown_service(path: &str) -> Value {
     with(block::get(path, 0x300, 1, 1), "/AppCfg/Service", 0x5A)
+}
+
+fn writes(plc: &FakePlc) -> usize {
+    plc.messages().iter().filter(|message| message[0] == 0x10).count()
 }

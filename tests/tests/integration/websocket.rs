@@ -12,7 +12,7 @@ async fn a_viewer_gets_hello_and_everything() {
     let relay = Relay::start().await;
     let id = relay.rest.create(&block::product_name("0,0")).await;
     let viewer = relay.viewer().await;
-    assert_eq!(viewer.hello["protocol"], 1);
+    assert_eq!(viewer.hello["protocol"], 2);
     assert!(viewer.hello["relay"].is_string());
     assert_eq!(viewer.blocks[&id]["name"], "get-1-1-7");
     let status = &viewer.statuses[&id];

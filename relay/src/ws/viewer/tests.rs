@@ -1,6 +1,6 @@
 use std::convert::Infallible;
 
-use cipdeck_shared::api::{Answer, ProblemCode};
+use cipdeck_shared::api::{ActorKind, Answer, ProblemCode, Role, WriteState};
 use cipdeck_shared::config::{BlockId, MsgCipGeneric};
 use futures_util::stream;
 use tokio::sync::mpsc;
@@ -8,8 +8,10 @@ use tokio::task::JoinHandle;
 use tokio_util::sync::PollSender;
 
 use super::*;
+use crate::actor::{Life, Limits, Standing};
+use crate::audit::Audit;
 use crate::draft::Draft;
-use crate::history::Recorder;
+use crate::runner::Guard;
 use crate::store::Store;
 
 /// A viewer's end of a socket that is made of channels.
@@ -17,6 +19,9 @@ struct Page {
     to: mpsc::Sender<Result<Message, Infallible>>,
     from: mpsc::Receiver<Message>,
     blocks: Blocks,
+    policy: Arc<Policy>,
+    actor: Actor,
+    life: Arc<Life>,
     stop: CancellationToken,
     serving: JoinHandle<()>,
 }
@@ -24,14 +29,22 @@ struct Page {
 impl Page {
     /// Opened, with hello and the first snapshot taken.
     async fn open() -> Self {
-        let blocks = Blocks::open(Store::open(None).await.unwrap(), Recorder::default()).await.unwrap();
-        let mut page = Self::of(blocks);
-        assert!(matches!(page.next().await, ServerMessage::Hello { protocol: 1, .. }));
+        let mut page = Self::of(Role::Engineer).await;
+        assert!(matches!(page.next().await, ServerMessage::Hello { protocol: 2, .. }));
+        assert!(matches!(page.next().await, ServerMessage::Access(WriteState { window: None, .. })));
         let ServerMessage::Snapshot { seq: 1, .. } = page.next().await else { panic!("a snapshot") };
         page
     }
 
-    fn of(blocks: Blocks) -> Self {
+    /// Somebody with a session of this role.
+    async fn of(role: Role) -> Self {
+        let policy = Arc::new(Policy::new(None, Audit::open(None).unwrap(), 0));
+        let store = Store::open(None).await.unwrap();
+        let guard = Guard::new(Arc::clone(&policy));
+        let blocks = Blocks::open(store, Arc::clone(&policy), guard).await.unwrap();
+        let limits = Limits { idle: None, absolute: Duration::from_secs(60) };
+        let (standing, life) = (Arc::new(Standing::new(Some(role))), Arc::new(Life::begin(1, limits)));
+        let actor = Actor::in_session("anna", ActorKind::Person, "", standing, Arc::clone(&life));
         let (to, frames) = mpsc::channel(1);
         let (sink, from) = mpsc::channel(1);
         let sink = PollSender::new(sink);
@@ -40,9 +53,14 @@ impl Page {
         });
         let stream = Box::pin(stream);
         let stop = CancellationToken::new();
-        let serving =
-            tokio::spawn(serve(sink, stream, blocks.clone(), stop.clone(), |never| match *never {}));
-        Self { to, from, blocks, stop, serving }
+        let seat = Seat {
+            actor: actor.clone(),
+            blocks: blocks.clone(),
+            policy: Arc::clone(&policy),
+            stop: stop.clone(),
+        };
+        let serving = tokio::spawn(serve(sink, stream, seat, |never| match *never {}));
+        Self { to, from, blocks, policy, actor, life, stop, serving }
     }
 
     async fn say(&mut self, text: impl Into<String>) {
@@ -70,7 +88,7 @@ impl Page {
     }
 
     async fn create(&self, config: MsgCipGeneric) -> BlockId {
-        self.blocks.create(Draft { id: None, revision: None, config }).await.unwrap().id
+        self.blocks.create(&self.actor, Draft { id: None, revision: None, config }).await.unwrap().id
     }
 
     async fn problem(&mut self) -> (String, ProblemCode) {
@@ -123,8 +141,13 @@ async fn what_cannot_be_carried_out_is_told_why() {
     let id = page.create(config).await;
     page.say(format!(r#"{{"type":"run","id":"c3","block":"{id}"}}"#)).await;
     assert_eq!(page.problem().await, ("c3".to_owned(), ProblemCode::NotPermitted));
-    page.say(format!(r#"{{"type":"run","id":"c4","block":"{id}","confirm_write":1}}"#)).await;
-    assert!(matches!(page.answer().await, (id, Answer::Status(status)) if id == "c4" && status.q));
+    page.policy.open_window(&page.actor, None).unwrap();
+    let ticket = page.blocks.offer(&page.actor, id, 1).await.unwrap().ticket;
+    for (command, is_done) in [("c4", true), ("c5", false)] {
+        page.say(format!(r#"{{"type":"run","id":"{command}","block":"{id}","ticket":"{ticket}"}}"#)).await;
+        let (answered, answer) = page.answer().await;
+        assert_eq!((answered.as_str(), matches!(answer, Answer::Status(_))), (command, is_done), "once");
+    }
     page.to.send(Ok(Message::Binary(vec![1].into()))).await.unwrap();
     assert_eq!(page.problem().await.1, ProblemCode::Unreadable);
 }
@@ -137,6 +160,39 @@ async fn an_oversize_message_closes_with_1009() {
     assert_eq!(frame.code, 1009);
     drop(page.to);
     page.serving.await.unwrap();
+}
+
+#[tokio::test]
+async fn somebody_who_is_locked_out_hears_so_and_nothing_more() {
+    let mut page = Page::open().await;
+    page.life.end();
+    let Message::Close(Some(frame)) = page.frame().await else { panic!("a close frame") };
+    assert_eq!(frame.code, 4401);
+    drop(page.to);
+    page.serving.await.unwrap();
+}
+
+#[tokio::test]
+async fn a_viewer_hears_of_the_write_window_and_cannot_command() {
+    let mut page = Page::of(Role::Viewer).await;
+    let engineer = Actor::local(Role::Engineer, "");
+    let id = page.blocks.create(&engineer, draft()).await.unwrap().id;
+    page.policy.open_window(&engineer, None).unwrap();
+    loop {
+        if let ServerMessage::Access(WriteState { window: Some(window), .. }) = page.next().await {
+            break assert_eq!(window.owner, "local");
+        }
+    }
+    for command in ["run", "cancel"] {
+        page.say(format!(r#"{{"type":"{command}","id":"c1","block":"{id}"}}"#)).await;
+        assert_eq!(page.problem().await.1, ProblemCode::NotPermitted, "{command}");
+    }
+    page.say(format!(r#"{{"type":"in","id":"c1","block":"{id}","IN":false}}"#)).await;
+    assert_eq!(page.problem().await.1, ProblemCode::NotPermitted);
+}
+
+fn draft() -> Draft {
+    Draft { id: None, revision: None, config: MsgCipGeneric::product_name("0,0") }
 }
 
 #[tokio::test]
@@ -157,7 +213,7 @@ async fn changes_come_at_most_every_50_ms_and_a_slow_viewer_gets_the_newest_only
     let begin = Instant::now();
     // Nobody reads meanwhile: the channel holds one message, then the relay waits.
     for _ in 0..200 {
-        page.blocks.run(id, None).await.unwrap();
+        page.blocks.run(&page.actor, id, None).await.unwrap();
     }
     let elapsed = begin.elapsed();
     let mut messages = 0;
@@ -176,8 +232,7 @@ async fn changes_come_at_most_every_50_ms_and_a_slow_viewer_gets_the_newest_only
 
 #[tokio::test(start_paused = true)]
 async fn a_viewer_that_reads_nothing_is_left_behind() {
-    let blocks = Blocks::open(Store::open(None).await.unwrap(), Recorder::default()).await.unwrap();
-    let page = Page::of(blocks);
+    let page = Page::of(Role::Viewer).await;
     // Time passes by itself while everybody waits.
     page.serving.await.unwrap();
 }

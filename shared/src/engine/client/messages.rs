@@ -67,17 +67,21 @@ impl Client {
         }
     }
 
-    pub(in crate::engine) fn permit(&mut self, wants: &Wants, allowed: bool, cx: &mut Context<'_>) {
+    pub(in crate::engine) fn permit(
+        &mut self,
+        wants: &Wants,
+        verdict: Result<(), &str>,
+        cx: &mut Context<'_>,
+    ) {
         let Link::Ready(id, _) = &self.link else { return };
         if *id != wants.link || self.asking != Some((wants.block, wants.shot)) {
             return;
         }
         self.asking = None;
         let Some(job) = self.queue.pop_front() else { return };
-        if allowed {
-            return self.send(job, cx);
-        }
-        cx.out.push_back(Output::Block(job.block, Input::Failed(Failure::NotPermitted)));
+        let Err(why) = verdict else { return self.send(job, cx) };
+        let failure = Failure::NotPermitted(why.into());
+        cx.out.push_back(Output::Block(job.block, Input::Failed(failure)));
         self.advance(cx);
     }
 

@@ -212,9 +212,9 @@ impl Engine {
         self.link(link, now, |client, cx| client.poll_transmit(out, cx)).unwrap_or(false)
     }
 
-    /// The answer to [`Event::Wants`].
-    pub fn permit(&mut self, wants: &Wants, allowed: bool, now: Instant) {
-        self.link(wants.link, now, |client, cx| client.permit(wants, allowed, cx));
+    /// The answer to [`Event::Wants`]: an error says why not, in words for the block's cause.
+    pub fn permit(&mut self, wants: &Wants, verdict: Result<(), &str>, now: Instant) {
+        self.link(wants.link, now, |client, cx| client.permit(wants, verdict, cx));
     }
 
     /// When to call [`Self::handle_timeout`].

@@ -1,0 +1,66 @@
+//! What belongs to a write: the read of what is there, before and after, and both in words.
+
+use cipdeck_shared::api::{ReadValue, Written};
+use cipdeck_shared::config::{Channel, MsgCipGeneric, read_hex, write_hex};
+use cipdeck_shared::dissect;
+use cipdeck_shared::plan::MessagePlan;
+
+use crate::runner::Ended;
+
+/// A service that writes, and the one that reads the same. CIP Vol 1, appendix A.
+const PAIRS: [(i64, i64); 3] = [(0x02, 0x01), (0x10, 0x0E), (0x19, 0x18)];
+
+/// The read of what a configuration writes; none where no service reads the same.
+pub(crate) fn reader(config: &MsgCipGeneric) -> Option<MessagePlan> {
+    let (_, read) = PAIRS.into_iter().find(|(write, _)| *write == config.app_cfg.service)?;
+    let mut reader = config.clone();
+    reader.app_cfg.service = read;
+    // Not one of the controller's four buffers, and nothing of its own to send.
+    (reader.channel, reader.ctrl_cfg.trigger_type, reader.resume) = (Channel::Monitor, 0, false);
+    (reader.req_data, reader.req_length) = (String::new(), None);
+    MessagePlan::parse(&reader).0
+}
+
+/// What a read has found, or why there is nothing.
+pub(crate) fn found(ended: &Ended) -> Result<ReadValue, String> {
+    let status = &ended.view.status;
+    if !ended.view.q {
+        let cause = ended.view.cause.as_ref().and_then(|cause| cause.detail.clone());
+        let ids = format!("ErrorID {}, SubErrorID {}", status.error_id, status.sub_error_id);
+        return Err(cause.map_or_else(|| ids.clone(), |cause| format!("{ids}: {cause}")));
+    }
+    let reply = ended.exchange.response().unwrap_or_default();
+    Ok(value(&ended.exchange.request, reply, &ended.view.res_data))
+}
+
+/// What a write will leave behind: its data as the read would find it.
+pub(crate) fn wanted(reader: &MessagePlan, config: &MsgCipGeneric) -> Option<ReadValue> {
+    let data = read_hex(&config.req_data).ok()?;
+    let length = config.req_length.and_then(|length| usize::try_from(length).ok()).unwrap_or(data.len());
+    let data = data.get(..length)?;
+    let service = reader.bytes().first()? | 0x80;
+    let reply = [&[service, 0, 0, 0], data].concat();
+    Some(value(reader.bytes(), &reply, data))
+}
+
+/// Both sides of a write that has been carried out.
+pub(crate) fn written(
+    old: Option<ReadValue>,
+    new: Option<ReadValue>,
+    read_back: Option<ReadValue>,
+) -> Written {
+    let is_equal = new.as_ref().zip(read_back.as_ref()).map(|(new, found)| new.data == found.data);
+    Written { old, new, read_back, is_equal }
+}
+
+fn value(request: &[u8], reply: &[u8], data: &[u8]) -> ReadValue {
+    let decoded = dissect::decode(request, reply);
+    let words: Vec<_> = decoded
+        .iter()
+        .map(|value| {
+            let guess = if value.guess { " (a guess)" } else { "" };
+            format!("{} {} {}{guess}", value.name, value.type_name, value.text)
+        })
+        .collect();
+    ReadValue { data: write_hex(data), text: words.join("; ") }
+}
