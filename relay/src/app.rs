@@ -10,6 +10,7 @@ use tokio_util::task::TaskTracker;
 
 use crate::audit::Audit;
 use crate::blocks::Blocks;
+use crate::history::History;
 use crate::http::AllowedHosts;
 use crate::permit::Policy;
 use crate::store::Store;
@@ -27,6 +28,8 @@ pub(crate) struct App {
     pub(crate) blocks: Blocks,
     /// Who did what.
     pub(crate) audit: Audit,
+    /// What has happened.
+    pub(crate) history: History,
     /// Who acts who has not signed in, if anybody may.
     pub(crate) local: Option<Role>,
     /// Held by the one search for devices that may be under way.
@@ -43,6 +46,7 @@ pub(crate) struct Parts {
     pub(crate) policy: Arc<Policy>,
     pub(crate) store: Store,
     pub(crate) blocks: Blocks,
+    pub(crate) history: History,
 }
 
 impl App {
@@ -53,7 +57,7 @@ impl App {
         local: Option<Role>,
         stop: CancellationToken,
     ) -> Self {
-        let Parts { policy, store, blocks } = parts;
+        let Parts { policy, store, blocks, history } = parts;
         let audit = policy.audit.clone();
         Self {
             hosts: Arc::new(AllowedHosts::new(address)),
@@ -61,6 +65,7 @@ impl App {
             store,
             blocks,
             audit,
+            history,
             local,
             discovery: Arc::default(),
             stop,

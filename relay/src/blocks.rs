@@ -16,6 +16,7 @@ use crate::audit::Event;
 use crate::capture;
 use crate::draft::{Draft, normalised};
 use crate::error::ApiError;
+use crate::history::Recorder;
 use crate::hub::Hub;
 use crate::permit::{Confirmed, Offer, Order, Policy, record};
 use crate::ritual;
@@ -38,8 +39,13 @@ struct Inner {
 
 impl Blocks {
     /// Loads what is stored. Every IN is FALSE, except where a read resumes.
-    pub(crate) async fn open(store: Store, policy: Arc<Policy>, guard: Guard) -> Result<Self, StoreError> {
-        let hub = Arc::new(Hub::new());
+    pub(crate) async fn open(
+        store: Store,
+        policy: Arc<Policy>,
+        guard: Guard,
+        recorder: Recorder,
+    ) -> Result<Self, StoreError> {
+        let hub = Arc::new(Hub::recording(recorder));
         let runner = Runner::guarded(Arc::clone(&hub) as Arc<_>, guard);
         let all = store.load().await?;
         for stored in &all {

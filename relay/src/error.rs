@@ -7,6 +7,7 @@ use axum::response::{IntoResponse, Response};
 use cipdeck_shared::api::{Finding, Problem, ProblemCode};
 use cipdeck_shared::config::{Block, BlockId};
 
+use crate::history::HistoryError;
 use crate::runner::Refused;
 use crate::store::StoreError;
 
@@ -113,6 +114,15 @@ impl From<StoreError> for ApiError {
         match error {
             StoreError::Closed => Self::Unavailable(error.to_string()),
             error => Self::Internal(error.to_string()),
+        }
+    }
+}
+
+impl From<HistoryError> for ApiError {
+    fn from(error: HistoryError) -> Self {
+        match error {
+            HistoryError::Closed => Self::Unavailable(error.to_string()),
+            error @ HistoryError::Sqlite(_) => Self::Internal(error.to_string()),
         }
     }
 }

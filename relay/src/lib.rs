@@ -15,6 +15,7 @@ mod blocks;
 mod discover;
 mod draft;
 mod error;
+mod history;
 mod http;
 mod hub;
 mod permit;
@@ -39,6 +40,7 @@ use self::app::{App, Parts};
 use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
 pub use self::error::RunError;
+use self::history::History;
 use self::permit::{Gate, Policy, RuleError, permit};
 use self::runner::Guard;
 pub use self::settings::Settings;
@@ -87,6 +89,7 @@ async fn serve_with(
         None => RunError::Store(format!("{error}")),
     };
     let store = Store::open(database.as_deref()).await.map_err(no_store)?;
+    let history = History::open(settings.data.as_deref(), settings.history).await;
     // After the store, which only one relay can have.
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
     note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
@@ -94,12 +97,13 @@ async fn serve_with(
     let policy = Arc::new(policy(&settings, audit.clone(), &stored)?);
     policy.lists.listens_on(address);
     let guard = Guard::with_gate(Arc::clone(&policy), gate);
-    let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard).await.map_err(no_store)?;
+    let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard, history.recorder());
+    let blocks = blocks.await.map_err(no_store)?;
     tracing::info!(server.address = %address, data = ?settings.data, "listening");
 
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
-    let parts = Parts { policy, store, blocks: blocks.clone() };
+    let parts = Parts { policy, store, blocks: blocks.clone(), history: history.clone() };
     let app = App::new(address, parts, settings.local, stop.clone());
     let viewers = app.viewers.clone();
     let server =
@@ -116,6 +120,7 @@ async fn serve_with(
         tracing::info!("some viewers did not take their last message");
     }
     blocks.stop().await;
+    history.close().await;
     // It has heard of the stop.
     let _ = keeper.await;
     note(&audit, &Record::new(Event::Stop, "relay", ""));

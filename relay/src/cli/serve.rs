@@ -46,7 +46,7 @@ impl Serve {
             log_format: logging.log_format,
             local: self.local.map(|role| Local { role }),
             allow: Allow { target: self.allow.into_iter().map(by_flag).collect(), write: Vec::new() },
-            limits: Limits::default(),
+            ..Given::default()
         };
         let settings = match Settings::resolve(flags, file) {
             Ok(settings) => settings,

@@ -9,5 +9,10 @@ use crate::app::App;
 /// The relay lives.
 pub(crate) async fn show(State(app): State<App>) -> Json<Health> {
     let version = env!("CARGO_PKG_VERSION").to_owned();
-    Json(Health { status: "ok".to_owned(), version, blocks: app.blocks.hub().len() })
+    Json(Health {
+        status: "ok".to_owned(),
+        version,
+        blocks: app.blocks.hub().len(),
+        history: app.history.health(),
+    })
 }

@@ -10,6 +10,7 @@ mod discovery;
 mod extract;
 mod guard;
 mod health;
+mod history;
 mod targets;
 mod write;
 
@@ -37,6 +38,10 @@ pub(crate) fn router(app: App) -> Router {
         .route("/audit", get(audit::list))
         .route("/audit/state", get(audit::state))
         .route("/audit.jsonl", get(audit::export))
+        .route("/history", get(history::list))
+        .route("/history.csv", get(history::csv))
+        .route("/history/trend", get(history::trend))
+        .route("/history/state", get(history::state))
         .route("/targets", get(targets::list))
         .route("/window", get(write::show).post(write::open).delete(write::close))
         .route("/read-only", get(write::read_only).put(write::set_read_only))

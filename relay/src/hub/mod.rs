@@ -17,6 +17,7 @@ pub(crate) use self::changes::{Cursor, Update};
 use self::row::Row;
 use self::targets::Targets;
 use crate::capture::Carried;
+use crate::history::Recorder;
 use crate::runner::{Observer, Trace, lock};
 use crate::wall_clock;
 
@@ -25,6 +26,7 @@ use crate::wall_clock;
 pub(crate) struct Hub {
     latest: Mutex<Latest>,
     version: watch::Sender<u64>,
+    recorder: Recorder,
 }
 
 /// Counts up with every change. Each row remembers when it changed last, and `order` finds the newest ones.
@@ -43,9 +45,9 @@ struct Latest {
 const MAX_REMOVED: usize = 1_024;
 
 impl Hub {
-    /// Without blocks.
-    pub(crate) fn new() -> Self {
-        Self { latest: Mutex::default(), version: watch::Sender::new(0) }
+    /// Without blocks. What ends is handed over to the history.
+    pub(crate) fn recording(recorder: Recorder) -> Self {
+        Self { latest: Mutex::default(), version: watch::Sender::new(0), recorder }
     }
 
     /// A block is new or has changed.
@@ -163,6 +165,7 @@ impl Observer for Hub {
         exchange: &Exchange,
         trace: Option<Trace>,
     ) -> Option<BlockStatus> {
+        self.recorder.record(block, view, exchange);
         let mut status = None;
         self.change(|latest| {
             if latest.rows.contains_key(&block) {

@@ -2,11 +2,12 @@ use cipdeck_shared::config::MsgCipGeneric;
 use cipdeck_shared::engine::{Phase, StatusBits};
 
 use super::*;
+use crate::history::Recorder;
 
 const B1: BlockId = BlockId(1);
 
 fn hub(count: u32) -> Hub {
-    let hub = Hub::new();
+    let hub = Hub::recording(Recorder::default());
     for id in 1..=count {
         hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0") });
     }

@@ -13,6 +13,7 @@ use std::path::Path;
 pub(crate) use self::allow::StoredLists;
 pub(crate) use self::blocks::Change;
 pub(crate) use self::error::StoreError;
+pub(crate) use self::schema::migrate;
 use self::writer::Writer;
 
 /// Handle to the database. Clones share it.

@@ -24,7 +24,8 @@ pub(super) fn prepare(connection: &mut Connection) -> Result<(), StoreError> {
     migrate(connection, MIGRATIONS)
 }
 
-fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), StoreError> {
+/// Brings a database up to date, a version at a time.
+pub(crate) fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), StoreError> {
     let version = connection.pragma_query_value(None, "user_version", |row| row.get::<_, u32>(0))?;
     let found = usize::try_from(version).unwrap_or(usize::MAX);
     let missing = migrations.get(found..).ok_or(StoreError::TooNew { found, known: migrations.len() })?;

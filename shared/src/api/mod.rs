@@ -4,6 +4,7 @@ mod access;
 mod allow;
 mod audit;
 mod discovery;
+mod history;
 mod rest;
 mod secret;
 mod status;
@@ -18,6 +19,10 @@ pub use self::access::{
 pub use self::allow::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllowedWrite};
 pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
+pub use self::history::{
+    HistoryBucket, HistoryDropped, HistoryHealth, HistoryLoss, HistoryPage, HistoryRange, HistoryRun,
+    HistoryState, HistoryTrend, HistoryValue,
+};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
 };

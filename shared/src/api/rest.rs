@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::history::HistoryHealth;
 use super::status::BlockStatus;
 use crate::config::{Block, write_hex};
 use crate::engine::Exchange;
@@ -19,6 +20,9 @@ pub struct Health {
     pub version: String,
     /// How many blocks are stored.
     pub blocks: usize,
+    /// Whether runs are being kept.
+    #[serde(default)]
+    pub history: HistoryHealth,
 }
 
 /// `POST /api/v1/blocks/{id}/in`.

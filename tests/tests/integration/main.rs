@@ -12,6 +12,7 @@ mod door;
 mod foreign_client;
 mod frames;
 mod half_requests;
+mod history;
 mod late_reply;
 mod limits;
 mod peers;

@@ -11,6 +11,7 @@ use super::*;
 use crate::actor::{Life, Limits, Standing};
 use crate::audit::Audit;
 use crate::draft::Draft;
+use crate::history::Recorder;
 use crate::runner::Guard;
 use crate::store::Store;
 
@@ -41,7 +42,7 @@ impl Page {
         let policy = Arc::new(Policy::new(None, Audit::open(None).unwrap(), 0));
         let store = Store::open(None).await.unwrap();
         let guard = Guard::new(Arc::clone(&policy));
-        let blocks = Blocks::open(store, Arc::clone(&policy), guard).await.unwrap();
+        let blocks = Blocks::open(store, Arc::clone(&policy), guard, Recorder::default()).await.unwrap();
         let limits = Limits { idle: None, absolute: Duration::from_secs(60) };
         let (standing, life) = (Arc::new(Standing::new(Some(role))), Arc::new(Life::begin(1, limits)));
         let actor = Actor::in_session("anna", ActorKind::Person, "", standing, Arc::clone(&life));

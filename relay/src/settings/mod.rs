@@ -1,11 +1,19 @@
 //! What can be configured, from a TOML file and from flags; a flag overrides the file. docs/CONFIGURATION.md
 //! describes every key.
 
+mod access;
+mod history;
+mod limits;
+
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 
-use cipdeck_shared::api::{NewAllowedTarget, NewAllowedWrite, Role};
+use cipdeck_shared::api::{NewAllowedTarget, Role};
 use serde::Deserialize;
+
+pub use self::access::{Allow, Local};
+pub use self::history::HistorySettings;
+pub use self::limits::Limits;
 
 /// Where the relay listens unless told otherwise.
 pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 8818);
@@ -27,46 +35,14 @@ pub struct Settings {
     pub log: String,
     /// How log records are written.
     pub log_format: LogFormat,
+    /// What is kept of runs.
+    pub history: HistorySettings,
     /// Whoever is at this machine acts with this role, without signing in; `None` = people sign in.
     pub local: Option<Role>,
     /// What may be reached and written beside what administrators add.
     pub allow: Allow,
     /// Limits.
     pub limits: Limits,
-}
-
-/// The lists of the configuration file.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Allow {
-    /// `[[allow.target]]`
-    #[serde(default)]
-    pub target: Vec<NewAllowedTarget>,
-    /// `[[allow.write]]`
-    #[serde(default)]
-    pub write: Vec<NewAllowedWrite>,
-}
-
-/// `[local]`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Local {
-    /// `role = "engineer"`
-    pub role: Role,
-}
-
-/// `[limits]`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Limits {
-    /// Messages that one target gets per second; 0 = no limit.
-    pub messages_per_second: u32,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { messages_per_second: 1_000 }
-    }
 }
 
 /// How log records are written to stderr.
@@ -92,6 +68,8 @@ pub struct Given {
     pub log: Option<String>,
     /// `log_format = "json"`
     pub log_format: Option<LogFormat>,
+    /// `[history]`
+    pub history: Option<HistorySettings>,
     /// `[local]`
     pub local: Option<Local>,
     /// `[[allow.target]]` and `[[allow.write]]`
@@ -110,6 +88,7 @@ impl Settings {
             data: None,
             log: DEFAULT_LOG.to_owned(),
             log_format: LogFormat::default(),
+            history: HistorySettings::default(),
             local: None,
             allow: Allow::default(),
             limits: Limits::default(),
@@ -142,6 +121,7 @@ impl Settings {
             data: Some(data),
             log: flags.log.or(file.log).unwrap_or_else(|| DEFAULT_LOG.to_owned()),
             log_format: flags.log_format.or(file.log_format).unwrap_or_default(),
+            history: flags.history.or(file.history).unwrap_or_default().checked()?,
             local: flags.local.or(file.local).map(|local| local.role),
             allow: Allow {
                 target: [flags.allow.target, file.allow.target].concat(),
@@ -190,6 +170,16 @@ pub enum SettingsError {
         /// Where and what.
         source: Box<toml::de::Error>,
     },
+    /// A limit of the history that cannot be.
+    #[error("history.{key} is {value}; it may be 1 to {max}. To keep nothing: history.enabled = false")]
+    History {
+        /// Which key.
+        key: &'static str,
+        /// What it says.
+        value: u32,
+        /// What it may say.
+        max: u32,
+    },
     /// Neither a flag nor a home folder.
     #[error("no folder for data: this user has no home folder; give one with --data")]
     NoDataFolder,
@@ -232,18 +222,48 @@ mod tests {
     }
 
     #[test]
+    fn the_limits_of_the_history_are_checked_and_a_wrong_key_is_named() {
+        let of = |text: &str| {
+            let file = Given::parse(&format!("data = \"plant\"\n[history]\n{text}"))
+                .map_err(|error| error.to_string())?;
+            let settings = Settings::resolve(Given::default(), file).map_err(|error| error.to_string())?;
+            Ok(settings.history)
+        };
+        assert_eq!(of("max_mb = 64"), Ok(HistorySettings { max_mb: 64, ..HistorySettings::default() }));
+        assert_eq!(of("enabled = false").map(|history| history.enabled), Ok(false));
+        for (text, named) in
+            [("max_mb = 0", "max_mb"), ("max_days = 36501", "max_days"), ("max_gb = 1", "max_gb")]
+        {
+            let refused: Result<HistorySettings, String> = of(text);
+            assert!(refused.as_ref().is_err_and(|error| error.contains(named)), "{refused:?}");
+        }
+    }
+
+    #[test]
     fn every_key_is_documented() {
-        let text = include_str!("../../docs/CONFIGURATION.md");
-        let keys =
-            ["listen", "data", "log", "log_format", "[local]` `role", "[[allow.target]]", "[[allow.write]]"];
-        for key in keys.into_iter().chain(["[limits]` `messages_per_second"]) {
+        let text = include_str!("../../../docs/CONFIGURATION.md");
+        let keys = [
+            "listen",
+            "data",
+            "log",
+            "log_format",
+            "history.enabled",
+            "history.max_mb",
+            "history.max_days",
+            "local.role",
+            "allow.target",
+            "allow.write",
+            "limits.messages_per_second",
+        ];
+        for key in keys {
             assert!(text.contains(&format!("| `{key}` |")), "docs/CONFIGURATION.md does not describe {key}");
         }
         // The example in the document holds every key and is accepted as it stands.
         let example = text.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let given = Given::parse(example).unwrap();
-        let Given { listen, data, log, log_format, local, allow, limits } = given;
+        let Given { listen, data, log, log_format, history, local, allow, limits } = given;
         assert!(listen.is_some() && data.is_some() && log.is_some() && log_format.is_some());
+        assert_eq!(history, Some(HistorySettings::default()), "the example shows the defaults");
         assert!(local.is_some() && limits != Limits::default());
         assert_eq!((allow.target.len(), allow.write.len()), (1, 1));
     }
