@@ -9,7 +9,7 @@ use tokio::net::TcpListener;
 
 use super::{Exit, Logging, say};
 use crate::error::RunError;
-use crate::settings::{Allow, Given, Limits, Local, Settings};
+use crate::settings::{Allow, Given, Local, Settings};
 use crate::{shutdown, telemetry};
 
 /// The flags of `serve`; docs/CONFIGURATION.md describes them.

@@ -48,6 +48,13 @@ impl Destination {
         Some(Self::Network { from: network.own, to: SocketAddrV4::new(to, EXPLICIT_PORT) })
     }
 
+    /// The address, if it is not the usual port of somebody in a network that this machine shares with others.
+    pub(super) fn elsewhere(&self, networks: &[Network]) -> Option<SocketAddrV4> {
+        let (Self::Device(to) | Self::Network { to, .. }) = self;
+        let is_near = networks.iter().any(|network| !network.own.is_loopback() && network.contains(*to.ip()));
+        (!is_near || to.port() != EXPLICIT_PORT).then_some(*to)
+    }
+
     /// Reads an address and judges it by the networks that the machine is part of.
     pub(super) fn parse(text: &str, networks: &[Network]) -> Result<Self, AddressError> {
         let address = text
@@ -96,6 +103,20 @@ mod tests {
 
     fn parse(text: &str) -> Result<Destination, AddressError> {
         Destination::parse(text, &networks())
+    }
+
+    #[test]
+    fn what_is_not_the_usual_port_of_a_neighbour_is_elsewhere() {
+        for (text, is_elsewhere) in [
+            ("192.168.1.100", false),
+            ("192.168.1.255", false),
+            ("192.168.1.100:19", true),
+            ("192.168.1.255:19", true),
+            ("172.16.0.9", true),
+            ("127.0.0.1", true),
+        ] {
+            assert_eq!(parse(text).unwrap().elsewhere(&networks()).is_some(), is_elsewhere, "{text}");
+        }
     }
 
     #[test]

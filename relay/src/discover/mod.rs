@@ -38,6 +38,7 @@ const MAX_ADDRESSES: usize = 256;
 #[derive(Clone, Debug)]
 pub(crate) struct Search {
     destinations: Vec<Destination>,
+    elsewhere: Vec<SocketAddrV4>,
     timeout: Duration,
 }
 
@@ -69,13 +70,20 @@ impl Search {
             return Err(SearchError::TooMany(addresses.len()));
         }
         let networks = Network::own().map_err(SearchError::Networks)?;
-        let destinations = if addresses.is_empty() {
+        let destinations: Vec<Destination> = if addresses.is_empty() {
             networks.iter().filter_map(Destination::everybody).collect()
         } else {
             let parse = |address: &String| Destination::parse(address, &networks);
             addresses.iter().map(parse).collect::<Result<_, _>>()?
         };
-        Ok(Self { destinations, timeout: Duration::from_millis(timeout) })
+        let elsewhere = destinations.iter().filter_map(|to| to.elsewhere(&networks)).collect();
+        Ok(Self { destinations, elsewhere, timeout: Duration::from_millis(timeout) })
+    }
+
+    /// Addresses that are not the usual port of a device in a network of this machine: a relay asks them only where its
+    /// lists allow it.
+    pub(crate) fn elsewhere(&self) -> &[SocketAddrV4] {
+        &self.elsewhere
     }
 
     /// Asks, and listens until the time is over.

@@ -4,6 +4,7 @@
 //! under the same lock, so that everybody sees them in the order in which they happened.
 
 mod clock;
+mod commands;
 mod connect;
 mod driver;
 mod events;
@@ -18,9 +19,7 @@ use std::time::Duration;
 
 use cipdeck_shared::api::BlockStatus;
 use cipdeck_shared::config::{BlockId, Target};
-use cipdeck_shared::engine::{
-    BlockView, CommandError, Engine, Exchange, Instant, LinkId, Originator, TargetView,
-};
+use cipdeck_shared::engine::{BlockView, Engine, Exchange, Instant, LinkId, Originator, TargetView};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use cipdeck_shared::sim::Device;
 use tokio::runtime::Handle;
@@ -29,12 +28,13 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 pub(crate) use self::clock::Clock;
+pub(crate) use self::commands::{Ended, Refused};
 pub(crate) use self::connect::lock;
 use self::link::Socket;
 use self::trail::Trail;
 pub use self::trail::{Direction, Ends};
 pub(crate) use self::trail::{Tap, Trace};
-use crate::permit::{Denied, Former, Gate, Grants, Lists, Order, Policy, Sending, permit};
+use crate::permit::{Gate, Grants, Lists, Policy, Sending, permit};
 
 /// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
 pub(crate) trait Observer: Send + Sync + 'static {
@@ -53,34 +53,6 @@ pub(crate) trait Observer: Send + Sync + 'static {
     ) -> Option<BlockStatus>;
     /// A target looks different; `None` when no block needs it any more.
     fn target(&self, target: &Target, view: Option<&TargetView>);
-}
-
-/// How a run ended: with DN or ER.
-#[derive(Clone, Debug)]
-pub(crate) struct Ended {
-    /// The block at that moment, with all edges of the message: its IN is still TRUE.
-    pub(crate) view: Box<BlockView>,
-    /// What went over the wire.
-    pub(crate) exchange: Box<Exchange>,
-    /// What the observer answers with.
-    pub(crate) status: Option<BlockStatus>,
-}
-
-/// Why a command was not carried out.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Refused {
-    /// No such block.
-    #[error("there is no such block")]
-    UnknownBlock,
-    /// A message is under way, or IN is TRUE.
-    #[error("the block is busy or its IN is TRUE")]
-    Busy,
-    /// Who commands it may not, or not now.
-    #[error("{0}")]
-    NotPermitted(Denied),
-    /// Nothing is started any more.
-    #[error("the relay is stopping")]
-    Unavailable,
 }
 
 /// Handle to everything that runs. Clones share it.
@@ -140,9 +112,6 @@ struct State {
     stopping: bool,
 }
 
-/// Ids for messages of their own, round and round.
-const MAX_PASSING: u32 = 65_536;
-
 /// How long sessions have for their farewell.
 const FAREWELL: Duration = Duration::from_secs(1);
 
@@ -200,51 +169,6 @@ impl Runner {
         });
     }
 
-    /// One message, whatever `TriggerType`. The message goes on when nobody waits for its end any more.
-    pub(crate) async fn run(&self, block: BlockId, order: Option<Order>) -> Result<Ended, Refused> {
-        let (sender, ended) = oneshot::channel();
-        self.0.command(|state, now| {
-            let former = self.0.permit(state, block, order, true)?;
-            let shot = state.engine.run(block, now).map_err(|error| state.take_back(block, former, error))?;
-            state.runs.insert((block, shot), sender);
-            Ok(())
-        })?;
-        ended.await.map_err(|_| Refused::Unavailable)
-    }
-
-    /// Sets IN.
-    pub(crate) fn set_in(&self, block: BlockId, input: bool, order: Option<Order>) -> Result<(), Refused> {
-        self.0.command(|state, now| {
-            let former = if input { self.0.permit(state, block, order, false)? } else { None };
-            state.engine.set_in(block, input, now).map_err(|error| state.take_back(block, former, error))
-        })
-    }
-
-    /// Cancels what is under way; nothing when idle.
-    pub(crate) fn cancel(&self, block: BlockId) -> Result<(), Refused> {
-        self.0.command(|state, now| state.engine.cancel(block, now).map_err(Refused::from))
-    }
-
-    /// What somebody would hear who commanded a block.
-    pub(crate) fn ask(&self, block: BlockId, order: &Order) -> Result<(), Refused> {
-        let Some(guard) = &self.0.guard else { return Ok(()) };
-        let state = lock(&self.0.state);
-        state.grants.ask(guard.gate, &guard.policy, block, order).map_err(Refused::from)
-    }
-
-    /// One message of a block that is forgotten afterwards: a read that belongs to a write.
-    pub(crate) async fn pass(&self, name: &str, plan: MessagePlan, order: Order) -> Result<Ended, Refused> {
-        let block = self.0.with(|state, _| {
-            state.passing = state.passing.wrapping_add(1);
-            // From the end of the ids, which no database gets near.
-            BlockId(u32::MAX - state.passing % MAX_PASSING)
-        });
-        self.put(block, name, 1, Ok(plan));
-        // However this future ends, the block goes.
-        let _passing = Passing { runner: self, block };
-        self.run(block, Some(order)).await
-    }
-
     /// How a block looks, with all edges of its last message.
     pub(crate) fn view(&self, block: BlockId) -> Option<BlockView> {
         lock(&self.0.state).engine.view(block)
@@ -294,28 +218,6 @@ impl Inner {
         }
     }
 
-    /// A command of a person: refused while stopping.
-    fn command<T>(
-        self: &Arc<Self>,
-        call: impl FnOnce(&mut State, Instant) -> Result<T, Refused>,
-    ) -> Result<T, Refused> {
-        self.with(|state, now| if state.stopping { Err(Refused::Unavailable) } else { call(state, now) })
-    }
-
-    /// Asks for a command; the one that it replaces.
-    fn permit(
-        &self,
-        state: &mut State,
-        block: BlockId,
-        order: Option<Order>,
-        is_run: bool,
-    ) -> Result<Option<Former>, Refused> {
-        let Some(guard) = &self.guard else { return Ok(None) };
-        // Behind a guard nobody commands without a name.
-        let order = order.ok_or(Refused::NotPermitted(Denied::Gone))?;
-        Ok(Some(state.grants.command(guard.gate, &guard.policy, block, order, is_run)?))
-    }
-
     fn lists(&self) -> Option<&Lists> {
         self.guard.as_ref().map(|guard| &guard.policy.lists)
     }
@@ -358,46 +260,6 @@ impl Inner {
 /// Differs from start to start: a target may still know the connections of the relay that was killed.
 fn originator() -> Originator {
     Originator::new(RandomState::new().build_hasher().finish())
-}
-
-impl State {
-    /// A command that the engine refuses leaves everything as it was.
-    fn take_back(&mut self, block: BlockId, former: Option<Former>, error: CommandError) -> Refused {
-        if let Some(former) = former {
-            self.grants.restore(block, former);
-        }
-        error.into()
-    }
-}
-
-/// A block that is there for one message.
-struct Passing<'a> {
-    runner: &'a Runner,
-    block: BlockId,
-}
-
-impl Drop for Passing<'_> {
-    fn drop(&mut self) {
-        self.runner.remove(self.block);
-    }
-}
-
-impl From<Denied> for Refused {
-    fn from(denied: Denied) -> Self {
-        match denied {
-            Denied::Unknown => Self::UnknownBlock,
-            denied => Self::NotPermitted(denied),
-        }
-    }
-}
-
-impl From<CommandError> for Refused {
-    fn from(error: CommandError) -> Self {
-        match error {
-            CommandError::UnknownBlock => Self::UnknownBlock,
-            CommandError::Busy => Self::Busy,
-        }
-    }
 }
 
 impl std::fmt::Debug for Runner {

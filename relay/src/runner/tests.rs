@@ -6,6 +6,7 @@ use super::*;
 use crate::actor::Actor;
 use crate::audit::Audit;
 use crate::client::Nobody;
+use crate::permit::Order;
 
 const BLOCK: BlockId = BlockId(1);
 

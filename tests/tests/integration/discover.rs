@@ -240,3 +240,13 @@ fn nobody(ended: &Ended) {
     assert_eq!(ended.code, 4, "{ended:?}");
     assert!(ended.stderr.contains("nobody answered"), "{ended:?}");
 }
+
+/// A relay that asks wherever it is told would be a way into every network that it can reach.
+#[tokio::test]
+async fn rest_asks_nobody_whom_the_lists_do_not_allow() {
+    let relay = Relay::start().await;
+    for address in ["127.0.0.2", "203.0.113.7", "203.0.113.7:161"] {
+        let body = json!({ "addresses": [address], "timeout_ms": 100 });
+        relay.rest.post("discover", &body).await.is_problem(403, "not_permitted");
+    }
+}

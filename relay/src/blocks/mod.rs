@@ -1,11 +1,11 @@
 //! Blocks as REST, WebSocket and start-up use them: stored first, then run, then told to viewers.
 
+mod commands;
+
 use std::future::Future;
 use std::sync::Arc;
 
-use cipdeck_shared::api::{
-    BlockStatus, Checked, ExchangeView, ReadValue, TargetStatus, WriteTicket, Written, findings,
-};
+use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, TargetStatus, findings};
 use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
 use cipdeck_shared::engine::BlockView;
 use cipdeck_shared::plan::{Finding, MessagePlan};
@@ -18,9 +18,8 @@ use crate::draft::{Draft, normalised};
 use crate::error::ApiError;
 use crate::history::Recorder;
 use crate::hub::Hub;
-use crate::permit::{Confirmed, Offer, Order, Policy, record};
-use crate::ritual;
-use crate::runner::{Guard, Refused, Runner};
+use crate::permit::{Order, Policy, record};
+use crate::runner::{Guard, Runner};
 use crate::store::{Change, Store, StoreError};
 
 /// All blocks. Clones share them.
@@ -158,116 +157,6 @@ impl Blocks {
             Ok(())
         })
         .await
-    }
-
-    /// The first half of a write: what is there, what will be there, and the ticket for the second half.
-    pub(crate) async fn offer(
-        &self,
-        actor: &Actor,
-        id: BlockId,
-        revision: u64,
-    ) -> Result<WriteTicket, ApiError> {
-        let (runner, policy) = (&self.0.runner, &self.0.policy);
-        let block = self.block(id)?;
-        if block.revision != revision {
-            return Err(ApiError::Stale(Box::new(block)));
-        }
-        let plan = plan(&block.config).map_err(|all| ApiError::Findings(findings(&all)))?;
-        if !plan.access().may_write() {
-            return Err(ApiError::Unreadable(format!("{id} only reads: it is run without a ticket")));
-        }
-        let order = Order { actor: actor.clone(), confirmed: policy.hypothetical(revision) };
-        runner.ask(id, &order)?;
-        let reader = ritual::reader(&block.config);
-        let old = match &reader {
-            Some(reader) => self.read(actor, &block, reader.clone()).await,
-            None => Err("no service reads what this one writes".to_owned()),
-        };
-        let new = reader.and_then(|reader| ritual::wanted(&reader, &block.config));
-        let offer = Offer { revision, request: Arc::clone(plan.bytes()), old: old.clone().ok(), new };
-        Ok(policy.offer(actor, id, &offer, old.err()).map_err(Refused::from)?)
-    }
-
-    /// One message. The status at DN or ER; after a write with what is there then.
-    pub(crate) async fn run(
-        &self,
-        actor: &Actor,
-        id: BlockId,
-        ticket: Option<&str>,
-    ) -> Result<BlockStatus, ApiError> {
-        let order = self.order(actor, id, ticket)?;
-        let confirmed = order.confirmed.clone();
-        let config = self.block(id)?.config;
-        let ended = self.0.runner.run(id, Some(order)).await?;
-        let has_written = ended.view.q;
-        // A block that has been deleted meanwhile has no status.
-        let mut status = ended.status.ok_or_else(|| ApiError::no_block(id))?;
-        if let Some(confirmed) = confirmed.filter(|_| has_written) {
-            status.written = Some(self.read_back(actor, id, &config, confirmed).await);
-        }
-        Ok(status)
-    }
-
-    async fn read_back(
-        &self,
-        actor: &Actor,
-        id: BlockId,
-        config: &MsgCipGeneric,
-        confirmed: Confirmed,
-    ) -> Written {
-        let block = Block { id, revision: confirmed.revision, config: config.clone() };
-        let read = match ritual::reader(config) {
-            Some(reader) => self.read(actor, &block, reader).await.ok(),
-            None => None,
-        };
-        let written = ritual::written(confirmed.old, confirmed.new, read);
-        let record = record(Event::WriteReadBack, actor)
-            .with("block", id.to_string())
-            .with("ticket", confirmed.id)
-            .with_some("read_back", written.read_back.as_ref().map(|value| value.data.clone()))
-            .with_some("is_equal", written.is_equal);
-        self.0.policy.note(&record);
-        written
-    }
-
-    /// A read that belongs to a write.
-    async fn read(&self, actor: &Actor, block: &Block, plan: MessagePlan) -> Result<ReadValue, String> {
-        let order = Order::read(actor.clone());
-        let ended = self.0.runner.pass(&block.config.name, plan, order).await;
-        ended.map_err(|refused| refused.to_string()).and_then(|ended| ritual::found(&ended))
-    }
-
-    fn order(&self, actor: &Actor, id: BlockId, ticket: Option<&str>) -> Result<Order, ApiError> {
-        let confirmed = ticket.map(|ticket| self.0.policy.redeem(ticket, actor, id)).transpose();
-        Ok(Order { actor: actor.clone(), confirmed: confirmed.map_err(Refused::from)? })
-    }
-
-    /// Sets IN.
-    pub(crate) async fn set_in(
-        &self,
-        actor: &Actor,
-        id: BlockId,
-        input: bool,
-        ticket: Option<&str>,
-    ) -> Result<BlockStatus, ApiError> {
-        let resumes = self.block(id)?.config.resume;
-        let order = Some(self.order(actor, id, ticket)?);
-        if resumes {
-            self.edit(|inner| async move {
-                inner.runner.set_in(id, input, order)?;
-                Ok(inner.store.set_input(id, input).await?)
-            })
-            .await?;
-        } else {
-            self.0.runner.set_in(id, input, order)?;
-        }
-        self.status(id)
-    }
-
-    /// Cancels what is under way.
-    pub(crate) fn cancel(&self, id: BlockId) -> Result<BlockStatus, ApiError> {
-        self.0.runner.cancel(id)?;
-        self.status(id)
     }
 
     /// The lists have changed.
