@@ -36,6 +36,11 @@ impl Relay {
 
     /// With the database of an earlier relay.
     pub async fn start_in(folder: TempDir) -> Self {
+        Self::start_with(folder, |settings| settings).await
+    }
+
+    /// With other settings.
+    pub async fn start_with(folder: TempDir, change: impl FnOnce(Settings) -> Settings) -> Self {
         let listener = TcpListener::bind(("127.0.0.1", 0)).await.expect("a free port");
         let address = listener.local_addr().expect("the port that is bound");
         let (stop, stopped) = oneshot::channel();
@@ -44,6 +49,7 @@ impl Relay {
             .with_local(Role::Engineer)
             .allowing(LOOPBACK)
             .allowing("no-such-drive.invalid");
+        let settings = change(settings);
         let running = tokio::spawn(cipdeck_relay::run(settings, listener, async {
             let _ = stopped.await; // dropped counts, too
         }));

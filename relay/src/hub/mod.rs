@@ -165,7 +165,6 @@ impl Observer for Hub {
         exchange: &Exchange,
         trace: Option<Trace>,
     ) -> Option<BlockStatus> {
-        self.recorder.record(block, view, exchange);
         let mut status = None;
         self.change(|latest| {
             if latest.rows.contains_key(&block) {
@@ -176,6 +175,10 @@ impl Observer for Hub {
                 }
             }
         });
+        // Reads that belong to a write are nobody's block.
+        if status.is_some() {
+            self.recorder.record(block, view, exchange);
+        }
         status
     }
 

@@ -5,6 +5,7 @@
 
 mod compare;
 mod cyclic;
+mod history;
 mod load;
 mod processor;
 mod relay;
@@ -53,7 +54,12 @@ enum Command {
         load: Load,
     },
     /// A relay on one processor until the input ends.
-    Relay { processor: usize },
+    Relay {
+        processor: usize,
+        /// Keeps no history.
+        #[arg(long)]
+        no_history: bool,
+    },
 }
 
 fn main() {
@@ -64,7 +70,7 @@ fn main() {
             processor::pin(processor);
             println!("{}", serde_json::to_string(&senders::run(sender, &load)).expect("numbers"));
         }
-        Command::Relay { processor } => relay::serve(processor),
+        Command::Relay { processor, no_history } => relay::serve(processor, !no_history),
     }
 }
 
@@ -81,6 +87,7 @@ fn all(quick: bool, only: &str, out: Option<PathBuf>) {
     add("peers", &|quick| compare::table(target::Kind::Ciplink, quick));
     add("simulated", &|quick| compare::table(target::Kind::Simulated, quick));
     add("websocket", &relay::table);
+    add("history", &history::table);
     add("cyclic", &cyclic::table);
     if let Some(folder) = out {
         std::fs::create_dir_all(&folder).expect("a folder");

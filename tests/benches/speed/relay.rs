@@ -17,10 +17,16 @@ use crate::target::{Kind, Targets};
 use crate::way::{Sender, Way};
 
 /// This process: a relay on one processor, until nobody holds its input open any more.
-pub(crate) fn serve(on: usize) {
+pub(crate) fn serve(on: usize, history: bool) {
     processor::pin(on);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("a runtime");
-    let relay = runtime.block_on(Relay::start());
+    let folder = tempfile::TempDir::new().expect("a temporary folder");
+    let relay = runtime.block_on(Relay::start_with(folder, |mut settings| {
+        settings.history.enabled = history;
+        // As fast as it can.
+        settings.limits.messages_per_second = 0;
+        settings
+    }));
     println!("{}", relay.address);
     std::io::stdout().flush().expect("somebody reads");
     let _ = std::io::stdin().read_line(&mut String::new());
@@ -38,9 +44,15 @@ pub(crate) struct RelayProcess {
 impl RelayProcess {
     /// Starts it on a processor.
     pub(crate) fn start(on: usize) -> Self {
+        Self::start_with(on, &[])
+    }
+
+    /// Starts it with more arguments.
+    pub(crate) fn start_with(on: usize, more: &[&str]) -> Self {
         let program = std::env::current_exe().expect("this program");
         let mut child = Command::new(program)
             .args(["relay", &on.to_string()])
+            .args(more)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -48,6 +60,19 @@ impl RelayProcess {
         let mut line = String::new();
         BufReader::new(child.stdout.take().expect("its output")).read_line(&mut line).expect("a line");
         Self { child, address: line.trim().parse().expect("an address") }
+    }
+
+    /// A block for the smallest message to a target.
+    pub(crate) async fn block(&self, target: SocketAddr) -> String {
+        Rest::new(self.address).create(&block::get(&format!("4,{target}"), 1, 1, 1)).await
+    }
+
+    /// A WebSocket that waits for nothing but its answers.
+    pub(crate) fn web_socket(&self) -> WebSocket<TcpStream> {
+        let stream = TcpStream::connect(self.address).expect("the relay listens");
+        stream.set_nodelay(true).expect("an open socket");
+        let address = format!("ws://{}/api/v1/ws", self.address);
+        client(address, stream).expect("the relay takes a WebSocket").0
     }
 
     /// The processor time that it has used, in steps of 10 ms.
@@ -74,18 +99,15 @@ pub(crate) fn table(quick: bool) -> String {
     let target = *targets.addresses.first().expect("one target");
     let relay = RelayProcess::start(0);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    let block = block::get(&format!("4,{target}"), 1, 1, 1);
-    let id = runtime.block_on(Rest::new(relay.address).create(&block));
-    let stream = TcpStream::connect(relay.address).expect("the relay listens");
-    stream.set_nodelay(true).expect("an open socket");
-    let (mut socket, _) =
-        client(format!("ws://{}/api/v1/ws", relay.address), stream).expect("the relay takes a WebSocket");
+    let id = runtime.block_on(relay.block(target));
+    let mut socket = relay.web_socket();
     let load = Load { way: Way::Unconnected, targets: vec![target], warm_up: 100, measure };
     let (mut bare, mut through) = (Vec::new(), Vec::new());
     let anywhere = processor::pin(0);
     for _ in 0..rounds {
         bare.extend(send(Sender::Ours, 0, &load).map(|sample| sample.p50));
-        through.push(web_socket(&mut socket, &id, Duration::from_millis(measure)));
+        let durations = runs(&mut socket, &id, Duration::from_millis(measure));
+        through.push(percentile(&durations, 50) / 1_000.0);
     }
     processor::unpin(&anywhere);
     let (bare, through) = (median(bare), median(through));
@@ -98,8 +120,8 @@ pub(crate) fn table(quick: bool) -> String {
     )
 }
 
-/// The median, µs. A blocking client that reads no JSON: what it costs itself should not count.
-fn web_socket(socket: &mut WebSocket<TcpStream>, id: &str, measure: Duration) -> f64 {
+/// How long each run took, ns, sorted. A blocking client that reads no JSON: what it costs itself should not count.
+pub(crate) fn runs(socket: &mut WebSocket<TcpStream>, id: &str, measure: Duration) -> Vec<u64> {
     let end = Instant::now() + measure;
     let mut durations = Vec::new();
     while Instant::now() < end {
@@ -117,5 +139,5 @@ fn web_socket(socket: &mut WebSocket<TcpStream>, id: &str, measure: Duration) ->
         assert!(answer.contains(r#""Q":true"#), "{answer}");
     }
     durations.sort_unstable();
-    percentile(&durations, 50) / 1_000.0
+    durations
 }
