@@ -195,6 +195,16 @@ impl Life {
         self.limits.idle.map_or(absolute, |idle| absolute.min(self.began + active + idle))
     }
 
+    /// When it ends in any case.
+    pub(crate) fn ends_in_any_case(&self) -> Instant {
+        self.began + self.limits.absolute
+    }
+
+    /// Minutes without activity after which it ends.
+    pub(crate) fn idle_minutes(&self) -> Option<u32> {
+        self.limits.idle.and_then(|idle| u32::try_from(idle.as_secs() / 60).ok())
+    }
+
     /// When it was last used.
     pub(crate) fn active_at(&self) -> Instant {
         self.began + Duration::from_millis(self.active.load(Ordering::Relaxed))

@@ -3,11 +3,11 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use cipdeck_shared::api::Role;
 use tokio::sync::Mutex;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use crate::access::Access;
 use crate::audit::Audit;
 use crate::blocks::Blocks;
 use crate::history::History;
@@ -30,8 +30,8 @@ pub(crate) struct App {
     pub(crate) audit: Audit,
     /// What has happened.
     pub(crate) history: History,
-    /// Who acts who has not signed in, if anybody may.
-    pub(crate) local: Option<Role>,
+    /// Who calls.
+    pub(crate) access: Access,
     /// Held by the one search for devices that may be under way.
     pub(crate) discovery: Arc<Mutex<()>>,
     /// Ready when the relay stops.
@@ -45,19 +45,15 @@ pub(crate) struct App {
 pub(crate) struct Parts {
     pub(crate) policy: Arc<Policy>,
     pub(crate) store: Store,
+    pub(crate) access: Access,
     pub(crate) blocks: Blocks,
     pub(crate) history: History,
 }
 
 impl App {
     /// Puts the parts together.
-    pub(crate) fn new(
-        address: SocketAddr,
-        parts: Parts,
-        local: Option<Role>,
-        stop: CancellationToken,
-    ) -> Self {
-        let Parts { policy, store, blocks, history } = parts;
+    pub(crate) fn new(address: SocketAddr, parts: Parts, stop: CancellationToken) -> Self {
+        let Parts { policy, store, access, blocks, history } = parts;
         let audit = policy.audit.clone();
         Self {
             hosts: Arc::new(AllowedHosts::new(address)),
@@ -66,7 +62,7 @@ impl App {
             blocks,
             audit,
             history,
-            local,
+            access,
             discovery: Arc::default(),
             stop,
             viewers: TaskTracker::new(),

@@ -1,6 +1,7 @@
 //! Errors at the edges: of a request ([`ApiError`], as `application/problem+json`) and of the process ([`RunError`]).
 
 use std::net::SocketAddr;
+use std::time::Duration;
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -29,6 +30,9 @@ pub(crate) enum ApiError {
     /// A message is under way, or IN is TRUE.
     #[error("{0}")]
     Busy(String),
+    /// It would contradict what is there.
+    #[error("{0}")]
+    Conflict(String),
     /// Somebody else has changed the block.
     #[error("block {} has revision {} by now: look at it and decide again", .0.id, .0.revision)]
     Stale(Box<Block>),
@@ -38,6 +42,14 @@ pub(crate) enum ApiError {
     /// The configuration has errors; nothing was stored.
     #[error("the configuration has errors; nothing was stored")]
     Findings(Vec<Finding>),
+    /// Later.
+    #[error("{why}")]
+    TooMany {
+        /// When it is worth to try again.
+        retry_after: Duration,
+        /// What there is too much of.
+        why: String,
+    },
     /// The relay is stopping.
     #[error("{0}")]
     Unavailable(String),
@@ -59,11 +71,13 @@ impl ApiError {
             Self::NotPermitted(_) => (StatusCode::FORBIDDEN, ProblemCode::NotPermitted, "Not permitted"),
             Self::NotFound(_) => (StatusCode::NOT_FOUND, ProblemCode::NotFound, "Not found"),
             Self::Busy(_) => (StatusCode::CONFLICT, ProblemCode::Busy, "Busy"),
+            Self::Conflict(_) => (StatusCode::CONFLICT, ProblemCode::Conflict, "Conflict"),
             Self::Stale(_) => (StatusCode::CONFLICT, ProblemCode::StaleRevision, "Changed by somebody else"),
             Self::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, ProblemCode::TooLarge, "Too large"),
             Self::Findings(_) => {
                 (StatusCode::UNPROCESSABLE_ENTITY, ProblemCode::Findings, "Errors in the configuration")
             }
+            Self::TooMany { .. } => (StatusCode::TOO_MANY_REQUESTS, ProblemCode::TooMany, "Too many"),
             Self::Unavailable(_) => {
                 (StatusCode::SERVICE_UNAVAILABLE, ProblemCode::Unavailable, "Not available")
             }
@@ -88,13 +102,26 @@ impl From<ApiError> for Problem {
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let status = self.kind().0;
+        let retry_after = match &self {
+            Self::TooMany { retry_after, .. } => Some(HeaderValue::from(retry_after.as_secs() + 1)),
+            _ => None,
+        };
         if status.is_server_error() {
             tracing::error!(error = %self, "a request failed");
         }
         // A problem has string keys only, which is all that could fail.
         let body = serde_json::to_string(&Problem::from(self)).unwrap_or_default();
         let content_type = HeaderValue::from_static("application/problem+json");
-        (status, [(header::CONTENT_TYPE, content_type)], body).into_response()
+        let mut response = (status, [(header::CONTENT_TYPE, content_type)], body).into_response();
+        if status == StatusCode::UNAUTHORIZED {
+            // It has to be there, and makes no browser ask for a password.
+            let how = HeaderValue::from_static("Bearer realm=\"cipdeck\"");
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, how);
+        }
+        if let Some(retry_after) = retry_after {
+            response.headers_mut().insert(header::RETRY_AFTER, retry_after);
+        }
+        response
     }
 }
 
@@ -176,9 +203,11 @@ mod tests {
             ApiError::NotPermitted(String::new()),
             ApiError::NotFound(String::new()),
             ApiError::Busy(String::new()),
+            ApiError::Conflict(String::new()),
             ApiError::Stale(Box::new(block)),
             ApiError::TooLarge(1),
             ApiError::Findings(Vec::new()),
+            ApiError::TooMany { retry_after: Duration::ZERO, why: String::new() },
             ApiError::Unavailable(String::new()),
             ApiError::Internal(String::new()),
         ] {

@@ -3,6 +3,7 @@
 //! It moves bytes and time and decides nothing about the protocol. [`run`] is the whole server; [`cli`] is everything
 //! that a person types.
 
+mod access;
 mod actor;
 pub mod capture;
 pub mod cli;
@@ -29,6 +30,7 @@ mod wall_clock;
 mod ws;
 
 use std::future::Future;
+use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -36,6 +38,7 @@ use cipdeck_shared::sim::{Device, SimConfig};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
+use self::access::Access;
 use self::app::{App, Parts};
 use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
@@ -58,15 +61,15 @@ pub async fn run(
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
 ) -> Result<(), RunError> {
-    serve(settings, listener, shutdown, || ()).await
+    serve(settings, listener, shutdown, |_| ()).await
 }
 
-/// [`run`]; says when it is ready to answer.
+/// [`run`]; says when it is ready to answer, and with which set-up code if there is no administrator yet.
 pub(crate) async fn serve(
     settings: Settings,
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
-    ready: impl FnOnce() + Send,
+    ready: impl FnOnce(Option<String>) + Send,
 ) -> Result<(), RunError> {
     serve_with(settings, listener, shutdown, ready, permit).await
 }
@@ -76,7 +79,7 @@ async fn serve_with(
     settings: Settings,
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
-    ready: impl FnOnce() + Send,
+    ready: impl FnOnce(Option<String>) + Send,
     gate: Gate,
 ) -> Result<(), RunError> {
     let address = listener.local_addr().map_err(RunError::Listen)?;
@@ -93,6 +96,8 @@ async fn serve_with(
     // After the store, which only one relay can have.
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
     note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
+    let access = Access::open(store.clone(), audit.clone(), settings.local).await.map_err(no_store)?;
+    let setup_code = if settings.local.is_some() { None } else { access.setup_code() };
     let stored = store.load_lists().await.map_err(no_store)?;
     let policy = Arc::new(policy(&settings, audit.clone(), &stored)?);
     policy.lists.listens_on(address);
@@ -103,13 +108,13 @@ async fn serve_with(
 
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
-    let parts = Parts { policy, store, blocks: blocks.clone(), history: history.clone() };
-    let app = App::new(address, parts, settings.local, stop.clone());
+    let parts = Parts { policy, store, access, blocks: blocks.clone(), history: history.clone() };
+    let app = App::new(address, parts, stop.clone());
     let viewers = app.viewers.clone();
-    let server =
-        axum::serve(listener, http::router(app)).with_graceful_shutdown(stop.clone().cancelled_owned());
+    let server = axum::serve(listener, http::router(app).into_make_service_with_connect_info::<SocketAddr>())
+        .with_graceful_shutdown(stop.clone().cancelled_owned());
     let mut server = tokio::spawn(server.into_future());
-    ready();
+    ready(setup_code);
     let ended = tokio::select! {
         () = shutdown => None,
         ended = &mut server => Some(ended),

@@ -13,6 +13,13 @@ pub(crate) fn at(time: SystemTime) -> String {
     text(since.as_secs(), since.subsec_micros())
 }
 
+/// The time of day of a moment, by today's clock.
+pub(crate) fn of(moment: tokio::time::Instant) -> String {
+    let (now, today) = (tokio::time::Instant::now(), SystemTime::now());
+    let time = if moment > now { today.checked_add(moment - now) } else { today.checked_sub(now - moment) };
+    at(time.unwrap_or(today))
+}
+
 fn text(seconds: u64, micros: u32) -> String {
     let (days, second) = (seconds / 86_400, seconds % 86_400);
     let (year, month, day) = date(days);

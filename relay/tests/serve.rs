@@ -104,7 +104,7 @@ fn an_unknown_key_in_the_configuration_is_named() {
 
 #[cfg(unix)]
 #[test]
-fn the_command_prints_one_line_and_stops_when_asked() {
+fn the_command_says_where_it_listens_and_how_to_set_it_up_and_stops_when_asked() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path().to_str().unwrap();
     let mut child = cipdeck(&["serve", "--listen", "127.0.0.1:0", "--data", data])
@@ -121,7 +121,8 @@ fn the_command_prints_one_line_and_stops_when_asked() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
     let mut rest = String::new();
     stdout.read_to_string(&mut rest).unwrap();
-    assert_eq!(rest, "", "more than one line");
+    let code = rest.trim_end().strip_prefix("set-up code: ").expect("one more line");
+    assert!(code.len() == 14 && !code.contains('\n'), "{rest}");
 }
 
 fn cipdeck(arguments: &[&str]) -> Command {

@@ -80,9 +80,12 @@ async fn listen_and_run(settings: Settings) -> Result<(), RunError> {
     let listener =
         TcpListener::bind(settings.listen).await.map_err(|source| RunError::Bind(settings.listen, source))?;
     let address = listener.local_addr().map_err(RunError::Listen)?;
-    crate::serve(settings, listener, shutdown, || {
+    crate::serve(settings, listener, shutdown, |setup_code| {
         // Whoever started the relay waits for this one line.
         say(&format!("cipdeck listens on http://{address}"));
+        if let Some(code) = setup_code {
+            say(&format!("set-up code: {code}"));
+        }
     })
     .await
 }

@@ -2,36 +2,15 @@
 
 use std::convert::Infallible;
 
-use axum::extract::{FromRequestParts, Request, State};
+use axum::extract::{FromRequestParts, OptionalFromRequestParts};
 use axum::http::request::Parts;
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
 
 use crate::actor::Actor;
-use crate::app::App;
 use crate::error::ApiError;
 
-/// The caller of a route that asks for one.
+/// The caller of a route that asks for one; an `Option` of it for a route that answers anybody.
 #[derive(Clone, Debug)]
 pub(crate) struct Caller(pub(crate) Actor);
-
-/// The caller of a route that answers anybody.
-#[derive(Clone, Debug)]
-pub(crate) struct MaybeCaller(pub(crate) Option<Actor>);
-
-/// Finds out who calls, and answers nobody else.
-pub(super) async fn identify(State(app): State<App>, mut request: Request, next: Next) -> Response {
-    match app.local {
-        Some(role) => {
-            request.extensions_mut().insert(Actor::local(role, "127.0.0.1"));
-        }
-        None if request.uri().path() != "/api/v1/health" && request.uri().path().starts_with("/api") => {
-            return ApiError::SignedOut("sign in first".to_owned()).into_response();
-        }
-        None => {}
-    }
-    next.run(request).await
-}
 
 impl<S: Sync> FromRequestParts<S> for Caller {
     type Rejection = ApiError;
@@ -42,10 +21,10 @@ impl<S: Sync> FromRequestParts<S> for Caller {
     }
 }
 
-impl<S: Sync> FromRequestParts<S> for MaybeCaller {
+impl<S: Sync> OptionalFromRequestParts<S> for Caller {
     type Rejection = Infallible;
 
-    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Infallible> {
-        Ok(Self(parts.extensions.get::<Actor>().cloned()))
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Option<Self>, Infallible> {
+        Ok(parts.extensions.get::<Actor>().cloned().map(Self))
     }
 }

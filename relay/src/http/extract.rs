@@ -1,6 +1,8 @@
 //! Parts of requests, whose rejections are problems like all others.
 
-use axum::extract::{FromRequest, FromRequestParts, Path, Request};
+use std::net::{IpAddr, SocketAddr};
+
+use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, Request};
 use axum::http::request::Parts;
 use cipdeck_shared::config::BlockId;
 use futures_util::StreamExt;
@@ -25,6 +27,18 @@ pub(super) struct OptionalJson<T>(pub(super) T);
 /// The block in the address.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Id(pub(super) BlockId);
+
+/// The number in the address, of anything but a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Number(pub(super) u64);
+
+/// The name in the address. Not printed: it may be a secret.
+#[derive(Clone)]
+pub(super) struct Name(pub(super) String);
+
+/// Where the request comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peer(pub(super) IpAddr);
 
 /// `?revision=3`
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +69,37 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
         let Path(text) =
             Path::<String>::from_request_parts(parts, state).await.map_err(|_| unknown("like that"))?;
         text.parse().map(Self).map_err(|_| unknown(&text))
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Number {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let number = Path::<u64>::from_request_parts(parts, state).await;
+        number
+            .map(|Path(number)| Self(number))
+            .map_err(|_| ApiError::NotFound("an id is a number".to_owned()))
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Name {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let name = Path::<String>::from_request_parts(parts, state).await;
+        name.map(|Path(name)| Self(name))
+            .map_err(|_| ApiError::NotFound("the name cannot be read".to_owned()))
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Peer {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let peer = ConnectInfo::<SocketAddr>::from_request_parts(parts, state).await;
+        peer.map(|ConnectInfo(peer)| Self(peer.ip().to_canonical()))
+            .map_err(|rejection| ApiError::Internal(rejection.body_text()))
     }
 }
 

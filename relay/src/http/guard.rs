@@ -47,7 +47,10 @@ pub(crate) async fn check(State(app): State<App>, request: Request, next: Next) 
     match permitted(&app.hosts, &request) {
         Ok(()) => next.run(request).await,
         Err(error) => {
-            tracing::warn!(url.path = request.uri().path(), %error, "refused a request from elsewhere");
+            // The address of a view link is a secret.
+            let path = request.uri().path();
+            let path = if path.starts_with("/view/") { "/view/…" } else { path };
+            tracing::warn!(url.path = path, %error, "refused a request from elsewhere");
             error.into_response()
         }
     }

@@ -1,5 +1,6 @@
 //! REST under `/api/v1`, and the page under everything else. docs/REST.md describes the interface.
 
+mod access;
 mod allow;
 mod assets;
 mod audit;
@@ -11,6 +12,7 @@ mod extract;
 mod guard;
 mod health;
 mod history;
+mod need;
 mod targets;
 mod write;
 
@@ -19,7 +21,7 @@ use axum::extract::DefaultBodyLimit;
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware;
 use axum::response::Response;
-use axum::routing::{delete, get, post};
+use axum::routing::{delete, get, patch, post};
 
 use crate::app::App;
 use crate::error::ApiError;
@@ -32,6 +34,18 @@ pub(crate) use self::guard::AllowedHosts;
 pub(crate) fn router(app: App) -> Router {
     let api = Router::new()
         .route("/health", get(health::show))
+        .route("/session", get(access::show).post(access::sign_in).delete(access::sign_out))
+        .route("/session/active", post(access::active))
+        .route("/session/password", post(access::change_password))
+        .route("/setup", post(access::set_up))
+        .route("/users", get(access::list).post(access::add))
+        .route("/users/{name}", patch(access::change).delete(access::remove))
+        .route("/sessions", get(access::sessions))
+        .route("/sessions/{id}", delete(access::end_session))
+        .route("/tokens", get(access::tokens).post(access::make_token))
+        .route("/tokens/{id}", delete(access::revoke_token))
+        .route("/view-links", get(access::links).post(access::make_link))
+        .route("/view-links/{id}", delete(access::revoke_link))
         .route("/ws", get(ws::upgrade))
         .route("/check", post(commands::check))
         .route("/discover", post(discovery::discover))
@@ -62,12 +76,13 @@ pub(crate) fn router(app: App) -> Router {
         .method_not_allowed_fallback(unknown);
     Router::new()
         .nest("/api/v1", api)
+        .route("/view/{secret}", get(access::open))
         .route("/api", get(unknown))
         .route("/api/{*rest}", get(unknown))
         .fallback(assets::show)
         // Bodies are bounded where they are read.
         .layer(DefaultBodyLimit::disable())
-        .layer(middleware::from_fn_with_state(app.clone(), caller::identify))
+        .layer(middleware::from_fn_with_state(app.clone(), need::check))
         .layer(middleware::from_fn_with_state(app.clone(), guard::check))
         .layer(middleware::map_response(secure))
         .with_state(app)

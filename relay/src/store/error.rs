@@ -26,6 +26,9 @@ pub(crate) enum StoreError {
     /// A configuration that is no JSON any more.
     #[error("a stored block cannot be read: {0}")]
     Json(#[from] serde_json::Error),
+    /// The system gives no random numbers.
+    #[error("{0}")]
+    Secrets(String),
     /// More than four billion blocks.
     #[error("all ids are used up")]
     NoIds,

@@ -1,7 +1,8 @@
-//! Blocks in SQLite, on one writer thread: SQLite has one writer, so the code says so.
+//! Blocks, users, tokens and lists in SQLite, on one writer thread: SQLite has one writer, so the code says so.
 //!
 //! Nothing that was acknowledged is lost, not even by `kill -9`: WAL with `synchronous = FULL`.
 
+mod access;
 mod allow;
 mod blocks;
 mod error;
@@ -10,6 +11,7 @@ mod writer;
 
 use std::path::Path;
 
+pub(crate) use self::access::{PassKind, StoredPass, StoredUser};
 pub(crate) use self::allow::StoredLists;
 pub(crate) use self::blocks::Change;
 pub(crate) use self::error::StoreError;

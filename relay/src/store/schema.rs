@@ -7,8 +7,11 @@ use rusqlite::Connection;
 use super::StoreError;
 
 /// One entry per version; `user_version` counts them.
-const MIGRATIONS: &[&str] =
-    &[include_str!("migrations/0001_blocks.sql"), include_str!("migrations/0002_allow.sql")];
+const MIGRATIONS: &[&str] = &[
+    include_str!("migrations/0001_blocks.sql"),
+    include_str!("migrations/0002_allow.sql"),
+    include_str!("migrations/0003_access.sql"),
+];
 
 /// How long a relay that is just ending may still hold the file.
 const PATIENCE: Duration = Duration::from_secs(1);

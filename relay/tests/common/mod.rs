@@ -61,6 +61,8 @@ pub(crate) async fn request(
     body: &str,
 ) -> Reply {
     let headers: String = headers.iter().map(|(name, value)| [name, ": ", value, "\r\n"].concat()).collect();
+    let has_type = headers.to_lowercase().contains("content-type:");
+    let headers = if has_type { headers } else { format!("{headers}Content-Type: application/json\r\n") };
     let length = body.len();
     let text = format!(
         "{method} {path} HTTP/1.1\r\nConnection: close\r\nContent-Length: {length}\r\n{headers}\r\n{body}"

@@ -168,6 +168,8 @@ pub enum ProblemCode {
     NotFound,
     /// 409
     Busy,
+    /// 409: it would contradict what is there.
+    Conflict,
     /// 409
     StaleRevision,
     /// 413
@@ -186,12 +188,13 @@ pub enum ProblemCode {
 
 impl ProblemCode {
     /// All that this version knows.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Unreadable,
         Self::SignedOut,
         Self::NotPermitted,
         Self::NotFound,
         Self::Busy,
+        Self::Conflict,
         Self::StaleRevision,
         Self::TooLarge,
         Self::Findings,
@@ -208,6 +211,7 @@ impl ProblemCode {
             Self::NotPermitted => "not_permitted",
             Self::NotFound => "not_found",
             Self::Busy => "busy",
+            Self::Conflict => "conflict",
             Self::StaleRevision => "stale_revision",
             Self::TooLarge => "too_large",
             Self::Findings => "findings",

@@ -1,0 +1,103 @@
+//! Signing in and out, and set-up.
+
+use axum::Json as Answer;
+use axum::extract::{Request, State};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{AppendHeaders, IntoResponse};
+use cipdeck_shared::api::{
+    ActorKind, Caller as CallerView, PasswordChange, SessionState, SessionView, SetUp, SignIn,
+};
+
+use super::super::caller::Caller;
+use super::super::extract::{Json, Peer};
+use crate::access::{Known, SignedIn, no_cookies, session_cookie};
+use crate::app::App;
+use crate::error::ApiError;
+use crate::wall_clock;
+
+/// `GET session`: also for somebody who is not signed in.
+pub(in crate::http) async fn show(State(app): State<App>, request: Request) -> Answer<SessionView> {
+    Answer(view(&app, request.extensions().get::<Known>()))
+}
+
+/// `POST session`
+pub(in crate::http) async fn sign_in(
+    State(app): State<App>,
+    Peer(peer): Peer,
+    old: Option<Caller>,
+    Json(form): Json<SignIn>,
+) -> Result<impl IntoResponse, ApiError> {
+    let signed_in = app.access.sign_in(form, peer).await?;
+    if let Some(Caller(old)) = old {
+        app.access.sign_out(&old);
+    }
+    signed(&app, &signed_in)
+}
+
+/// `POST setup`
+pub(in crate::http) async fn set_up(
+    State(app): State<App>,
+    Peer(peer): Peer,
+    Json(form): Json<SetUp>,
+) -> Result<impl IntoResponse, ApiError> {
+    let signed_in = app.access.set_up(form, peer).await?;
+    signed(&app, &signed_in)
+}
+
+/// `DELETE session`
+pub(in crate::http) async fn sign_out(State(app): State<App>, caller: Option<Caller>) -> impl IntoResponse {
+    if let Some(Caller(actor)) = caller {
+        app.access.sign_out(&actor);
+    }
+    let forget = no_cookies().map(|cookie| (header::SET_COOKIE, cookie));
+    (StatusCode::NO_CONTENT, AppendHeaders(forget))
+}
+
+/// `POST session/active`: that it came is all it says.
+pub(in crate::http) async fn active() -> StatusCode {
+    StatusCode::NO_CONTENT
+}
+
+/// `POST session/password`
+pub(in crate::http) async fn change_password(
+    State(app): State<App>,
+    Caller(actor): Caller,
+    Json(change): Json<PasswordChange>,
+) -> Result<StatusCode, ApiError> {
+    app.access.change_password(change, &actor).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+fn signed(app: &App, signed_in: &SignedIn) -> Result<impl IntoResponse + use<>, ApiError> {
+    let cookie = HeaderValue::from_str(&session_cookie(&signed_in.secret))
+        .map_err(|error| ApiError::Internal(error.to_string()))?;
+    Ok(([(header::SET_COOKIE, cookie)], Answer(view(app, Some(&signed_in.known())))))
+}
+
+fn view(app: &App, known: Option<&Known>) -> SessionView {
+    let caller = known.and_then(caller);
+    let state = match caller {
+        Some(_) => SessionState::SignedIn,
+        None if *app.access.is_set_up().borrow() => SessionState::SignedOut,
+        None => SessionState::SetUp,
+    };
+    SessionView { state, caller, fingerprint: None, moves_to: None }
+}
+
+fn caller(known: &Known) -> Option<CallerView> {
+    let Known { actor, csrf } = known;
+    let (life, kind) = (actor.life(), actor.kind());
+    let name = match kind {
+        // As the audit names them, but for what the kind says already.
+        ActorKind::Token | ActorKind::ViewLink => actor.name().split_once(':').map_or("", |(_, name)| name),
+        ActorKind::Person | ActorKind::Local | ActorKind::Relay => actor.name(),
+    };
+    Some(CallerView {
+        name: name.to_owned(),
+        kind,
+        role: actor.role()?,
+        csrf: csrf.clone(),
+        ends_at: life.map(|life| wall_clock::of(life.ends_in_any_case())),
+        idle_minutes: life.and_then(|life| life.idle_minutes()),
+    })
+}
