@@ -53,9 +53,15 @@ pub struct Service {
 impl Service {
     /// `cipdeck serve` for whoever is at this machine, with its data in `folder`; `listen` is `127.0.0.1:0` for a free port.
     pub async fn serve(listen: &str, folder: &Path) -> Self {
-        let folder = folder.to_str().expect("a path in UTF-8");
-        let more = ["--local", "engineer", "--allow", LOOPBACK];
-        Self::start(&[&["serve", "--listen", listen, "--data", folder], &more[..]].concat()).await
+        Self::start(&serve(listen, folder)).await
+    }
+
+    /// [`Service::serve`], of a process that survives [`Process::limit_files`]: a file that is too big is an error to
+    /// it, as a full disk is, and not its end.
+    pub async fn serve_with_limits(listen: &str, folder: &Path) -> Self {
+        let program = tools::cipdeck();
+        let shell = ["-c", "trap '' XFSZ; exec \"$0\" \"$@\"", program.to_str().expect("a path in UTF-8")];
+        Self::started(Process::start(Path::new("sh"), [&shell[..], &serve(listen, folder)].concat())).await
     }
 
     /// `cipdeck simulate` with more arguments.
@@ -64,10 +70,18 @@ impl Service {
     }
 
     async fn start(arguments: &[&str]) -> Self {
-        let process = Process::start(&tools::cipdeck(), arguments);
+        Self::started(Process::start(&tools::cipdeck(), arguments)).await
+    }
+
+    async fn started(process: Process) -> Self {
         let address = process.line("cipdeck prints its address", PATIENCE, listening_at).await;
         Self { address, process }
     }
+}
+
+fn serve<'a>(listen: &'a str, folder: &'a Path) -> Vec<&'a str> {
+    let folder = folder.to_str().expect("a path in UTF-8");
+    vec!["serve", "--listen", listen, "--data", folder, "--local", "engineer", "--allow", LOOPBACK]
 }
 
 /// The address in a line like `cipdeck listens on http://127.0.0.1:8818`.

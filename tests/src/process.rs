@@ -6,7 +6,7 @@ use std::process::{ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use rustix::process::{Pid, Resource, Rlimit, Signal, getrlimit, kill_process, kill_process_group, prlimit};
 use tokio::io::{AsyncBufReadExt as _, AsyncRead, BufReader};
 use tokio::process::{Child, Command};
 
@@ -62,6 +62,16 @@ impl Process {
     /// Ends it without asking, as `kill -9` and a power failure do.
     pub fn kill(&self) {
         self.signal(Signal::KILL);
+    }
+
+    /// How big its files may become, in bytes; `None`: as big as it likes. Takes effect at once.
+    pub fn limit_files(&self, bytes: Option<u64>) {
+        let maximum = getrlimit(Resource::Fsize).maximum;
+        if let (Some(_), Some(pid)) = (self.child.id(), self.group) {
+            let limit = Rlimit { current: bytes.or(maximum), maximum };
+            prlimit(Some(pid), Resource::Fsize, limit)
+                .unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        }
     }
 
     /// Waits until it has ended.

@@ -188,3 +188,53 @@ async fn a_kill_costs_the_last_second_of_history_at_most_and_no_block() {
     assert!(per_second >= 1_000, "not fast enough to mean something: {per_second} runs/s");
     assert_eq!(rest.get("history/state").await.body["dropped"], json!([]));
 }
+
+#[tokio::test]
+async fn a_full_disk_costs_history_and_no_run_and_it_goes_on_when_there_is_room() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let relay = Service::serve_with_limits("127.0.0.1:0", folder.path()).await;
+    let rest = Rest::new(&relay.address);
+    let cyclic = with(block::product_name("0,0"), "/CtrlCfg", json!({ "TriggerType": 5 }));
+    let cyclic = rest.create(&cyclic).await;
+    let other = rest.create(&block::product_name("0,0")).await;
+    assert_eq!(rest.post(&format!("blocks/{cyclic}/in"), &json!({ "IN": true })).await.status, 200);
+    let health = async || rest.get("health").await.body["history"].clone();
+    let state = async || rest.get("history/state").await.body;
+    eventually("history is written", PATIENCE, async || {
+        state().await["runs"].as_u64().filter(|runs| *runs > 0)
+    })
+    .await;
+
+    // No file may become bigger than the history's log is now.
+    let log =
+        std::fs::metadata(folder.path().join("history.sqlite-wal")).expect("the log of the history").len();
+    relay.process.limit_files(Some(log));
+    let bad = eventually("it is said", PATIENCE, async || {
+        let health = health().await;
+        (health["recording"] == false && health["lost"].as_u64() > Some(0)).then_some(health)
+    })
+    .await;
+    let kept = state().await;
+    assert!(kept["problem"].is_string(), "{kept}");
+    assert_eq!(kept["dropped"][0]["why"], "disk", "{kept}");
+    assert_eq!(rest.run(&other).await["Q"], true, "runs go on");
+    let runs = async || rest.get(&format!("blocks/{cyclic}/status")).await.body["runs"].as_u64();
+    let before = runs().await;
+    eventually("cyclic runs go on", PATIENCE, async || runs().await.filter(|now| Some(*now) > before)).await;
+
+    relay.process.limit_files(None);
+    eventually("history goes on", PATIENCE, async || (health().await["recording"] == true).then_some(()))
+        .await;
+    let after = eventually("runs are kept again", PATIENCE, async || {
+        let state = state().await;
+        (state["runs"].as_u64() > kept["runs"].as_u64()).then_some(state)
+    })
+    .await;
+    assert_eq!(after["problem"], Value::Null);
+    let [dropped] = after["dropped"].as_array().expect("a list").as_slice() else { panic!("{after}") };
+    assert_eq!(
+        (&dropped["why"], &dropped["runs"]),
+        (&json!("disk"), &health().await["lost"]),
+        "{dropped} {bad}"
+    );
+}
