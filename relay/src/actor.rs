@@ -222,11 +222,6 @@ impl Life {
     pub(crate) fn end(&self) {
         self.ended.cancel();
     }
-
-    /// Ready when it has ended.
-    pub(crate) fn ended(&self) -> &CancellationToken {
-        &self.ended
-    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,9 @@ mod telemetry;
 mod wall_clock;
 mod ws;
 
+#[cfg(test)]
+mod tests;
+
 use std::future::Future;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};

@@ -29,6 +29,8 @@ use crate::ws;
 
 pub(crate) use self::caller::Caller;
 pub(crate) use self::guard::AllowedHosts;
+#[cfg(test)]
+pub(crate) use self::need::{NEEDS, Need};
 
 /// Everything that the relay serves.
 pub(crate) fn router(app: App) -> Router {

@@ -8,7 +8,6 @@ use cipdeck_shared::api::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllo
 use cipdeck_shared::config::{Endpoint, Host, Target};
 use cipdeck_shared::plan::Effect;
 use cipdeck_shared::table::{self, Access};
-use cipdeck_shared::wire::Epath;
 
 use super::question::{Denied, Sending, place};
 use super::target_rule::{RuleError, TargetRule};
@@ -57,7 +56,7 @@ impl TryFrom<&NewAllowedWrite> for WriteRule {
 
 impl WriteRule {
     fn covers(&self, sending: &Sending, effect: &Effect) -> bool {
-        sending.is_covered_by(&self.target)
+        sending.is_covered(effect, &self.target)
             && effect.service.0 == self.service
             && effect.class == Some(self.class)
             && (self.instance.is_none() || effect.instance == self.instance)
@@ -127,15 +126,8 @@ impl Lists {
     pub(super) fn allow(&self, sending: &Sending) -> Result<(), Denied> {
         let Target::Network(endpoint) = &sending.target else { return Ok(()) };
         let lists = self.read();
-        let is_covered = |route: &Epath| lists.targets.iter().any(|entry| entry.rule.covers(endpoint, route));
-        if !is_covered(&sending.route) {
-            return Err(Denied::Target(place(&sending.target, &sending.route)));
-        }
-        for effect in sending.effects.iter().filter(|effect| !effect.route.is_empty()) {
-            let route = sending.route.clone().join(&effect.route);
-            if !is_covered(&route) {
-                return Err(Denied::Target(place(&sending.target, &route)));
-            }
+        if let Some(route) = sending.uncovered(lists.targets.iter().map(|entry| &entry.rule)) {
+            return Err(Denied::Target(place(&sending.target, route)));
         }
         match &endpoint.host {
             Host::Ip(ip) => lists.admit(SocketAddr::from((*ip, endpoint.port))),

@@ -34,8 +34,8 @@ impl Order {
 pub(crate) struct Sending {
     /// The endpoint.
     pub(crate) target: Target,
-    /// What lies behind it.
-    pub(crate) route: Epath,
+    /// What lies behind it: the block's own route, and those on which requests inside of the request go on.
+    pub(crate) routes: Vec<Epath>,
     /// The worst of all effects.
     pub(crate) access: Access,
     /// What each service in the request does.
@@ -48,10 +48,18 @@ pub(crate) struct Sending {
 
 impl From<&MessagePlan> for Sending {
     fn from(plan: &MessagePlan) -> Self {
+        // The route as it was typed: a kind of device may need less of it.
+        let own = plan.routed(Profile::Generic).route();
+        let mut routes = vec![own.clone()];
+        for effect in plan.effects() {
+            let route = own.clone().join(&effect.route);
+            if !routes.contains(&route) {
+                routes.push(route);
+            }
+        }
         Self {
             target: plan.target().clone(),
-            // The route as it was typed: a kind of device may need less of it.
-            route: plan.routed(Profile::Generic).route().clone(),
+            routes,
             access: plan.access(),
             effects: plan.effects().to_vec(),
             request: Arc::clone(plan.bytes()),
@@ -61,17 +69,24 @@ impl From<&MessagePlan> for Sending {
 }
 
 impl Sending {
-    /// Whether a rule covers the target and the route. The built-in device is no target.
-    pub(super) fn is_covered_by(&self, rule: &TargetRule) -> bool {
-        match &self.target {
-            Target::BuiltIn => true,
-            Target::Network(endpoint) => rule.covers(endpoint, &self.route),
-        }
+    /// The first route that no rule covers. The built-in device is no target.
+    pub(super) fn uncovered<'a>(
+        &self,
+        rules: impl Iterator<Item = &'a TargetRule> + Clone,
+    ) -> Option<&Epath> {
+        let Target::Network(endpoint) = &self.target else { return None };
+        self.routes.iter().find(|route| !rules.clone().any(|rule| rule.covers(endpoint, route)))
+    }
+
+    /// Whether a rule covers what one of the effects reaches.
+    pub(super) fn is_covered(&self, effect: &Effect, rule: &TargetRule) -> bool {
+        let (Target::Network(endpoint), Some(own)) = (&self.target, self.routes.first()) else { return true };
+        rule.covers(endpoint, &own.clone().join(&effect.route))
     }
 
     /// `192.168.1.10:44818 via 1,0`, as the audit names it.
     pub(crate) fn path(&self) -> String {
-        place(&self.target, &self.route)
+        self.routes.first().map_or_else(|| self.target.to_string(), |route| place(&self.target, route))
     }
 }
 

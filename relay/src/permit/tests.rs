@@ -118,6 +118,37 @@ async fn a_route_inside_of_a_request_is_a_route() {
     assert_eq!(ask(&both, &engineer, &sending, None), Ok(()));
 }
 
+/// The operators' list is about the device that it names, not about what can be reached through it.
+#[tokio::test]
+async fn a_listed_write_is_not_listed_behind_another_route() {
+    let policy = policy(&["10.0.0.1 via *"]);
+    policy.lists.add_write(None, &set_150("10.0.0.1")).unwrap();
+    let mut packet = config(DEVICE, 0x0A);
+    (packet.app_cfg.class, packet.app_cfg.instance, packet.app_cfg.attribute) = (2, 1, 0);
+    let write = "10 03 20 04 24 96 30 03 01";
+    packet.req_data = format!("01 00 04 00 {write}");
+    policy.open_window(&person(Role::Engineer).actor, None).unwrap();
+    let confirmed = policy.hypothetical(1);
+    let operator = person(Role::Operator).actor;
+    assert_eq!(ask(&policy, &operator, &sending(&packet), confirmed.as_ref()), Ok(()));
+    packet.req_data = format!("01 00 04 00 52 02 20 06 24 01 05 9d 09 00 {write} 00 01 00 01 03");
+    let wrapped = sending(&packet);
+    assert_eq!(wrapped.access, cipdeck_shared::table::Access::Write, "{:?}", wrapped.effects);
+    let answer = ask(&policy, &operator, &wrapped, confirmed.as_ref());
+    assert!(matches!(answer, Err(Denied::NotOnList(_))), "{answer:?}");
+}
+
+fn set_150(target: &str) -> NewAllowedWrite {
+    NewAllowedWrite {
+        target: target.to_owned(),
+        service: 0x10,
+        class: 4,
+        instance: Some(150),
+        attribute: None,
+        note: String::new(),
+    }
+}
+
 #[tokio::test]
 async fn the_relay_s_own_machine_and_other_special_addresses_have_to_be_named() {
     let engineer = person(Role::Engineer).actor;
@@ -156,14 +187,7 @@ async fn a_name_stands_for_the_addresses_that_it_had_first_and_never_for_this_ma
 #[tokio::test]
 async fn roles_send_what_they_may() {
     let policy = policy(&["10.0.0.1"]);
-    let listed = NewAllowedWrite {
-        target: "10.0.0.1".to_owned(),
-        service: 0x10,
-        class: 4,
-        instance: Some(150),
-        attribute: None,
-        note: String::new(),
-    };
+    let listed = set_150("10.0.0.1");
     let window = person(Role::Engineer);
     policy.open_window(&window.actor, None).unwrap();
     let confirmed = policy.hypothetical(1);
