@@ -13,7 +13,9 @@ use crate::blocks::Blocks;
 use crate::history::History;
 use crate::http::AllowedHosts;
 use crate::permit::Policy;
+use crate::settings::Settings;
 use crate::store::Store;
+use crate::tls::Tls;
 
 /// The parts of the relay, shared by all requests.
 #[derive(Clone, Debug)]
@@ -24,6 +26,12 @@ pub(crate) struct App {
     pub(crate) policy: Arc<Policy>,
     /// The database.
     pub(crate) store: Store,
+    /// Browsers are told to keep to HTTPS.
+    pub(crate) hsts: bool,
+    /// What is served with beyond loopback.
+    pub(crate) tls: Option<Tls>,
+    /// What was configured.
+    pub(crate) settings: Arc<Settings>,
     /// What it is all about.
     pub(crate) blocks: Blocks,
     /// Who did what.
@@ -52,11 +60,14 @@ pub(crate) struct Parts {
 
 impl App {
     /// Puts the parts together.
-    pub(crate) fn new(address: SocketAddr, parts: Parts, stop: CancellationToken) -> Self {
+    pub(crate) fn new(settings: Settings, parts: Parts, tls: Option<Tls>, stop: CancellationToken) -> Self {
         let Parts { policy, store, access, blocks, history } = parts;
         let audit = policy.audit.clone();
         Self {
-            hosts: Arc::new(AllowedHosts::new(address)),
+            hosts: Arc::default(),
+            hsts: false,
+            tls,
+            settings: Arc::new(settings),
             policy,
             store,
             blocks,
@@ -67,5 +78,12 @@ impl App {
             stop,
             viewers: TaskTracker::new(),
         }
+    }
+
+    /// The same parts, for who calls this address.
+    pub(crate) fn answering_at(&self, address: SocketAddr, is_tls: bool) -> Self {
+        let allowed = AllowedHosts::new(address, is_tls, &self.settings.allow_hosts);
+        let hsts = is_tls && self.settings.tls.as_ref().is_some_and(|tls| tls.hsts);
+        Self { hosts: Arc::new(allowed), hsts, ..self.clone() }
     }
 }

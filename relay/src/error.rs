@@ -163,9 +163,18 @@ pub enum RunError {
     /// The listener is broken.
     #[error("cannot listen: {0}")]
     Listen(#[source] std::io::Error),
+    /// Somebody at this machine acts without signing in, and others could reach it.
+    #[error(
+        "[local] lets everybody act without signing in: that is for loopback only. Listen on 127.0.0.1 instead of {0}, or \
+         leave out [local] and make accounts"
+    )]
+    LocalForOthers(SocketAddr),
+    /// There is no certificate to serve with.
+    #[error("{0}")]
+    Tls(String),
     /// Not a loopback address.
     #[error(
-        "{0} is not a loopback address: without users and roles the relay listens on 127.0.0.1 or [::1] only"
+        "{0} is not a loopback address: only `listen` in the settings takes the relay to where others can reach it"
     )]
     NotLoopback(SocketAddr),
     /// The database cannot be used.
@@ -177,9 +186,6 @@ pub enum RunError {
     /// A line of the list of targets makes no sense.
     #[error("the lists cannot be used: {0}")]
     List(String),
-    /// The server failed.
-    #[error("the server failed: {0}")]
-    Serve(#[source] std::io::Error),
     /// The server's task ended by itself.
     #[error("the server stopped unexpectedly")]
     Stopped,

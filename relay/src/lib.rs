@@ -19,6 +19,7 @@ mod error;
 mod history;
 mod http;
 mod hub;
+mod listen;
 mod permit;
 mod ritual;
 mod runner;
@@ -26,6 +27,7 @@ mod shutdown;
 mod simulate;
 mod store;
 mod telemetry;
+mod tls;
 mod wall_clock;
 mod ws;
 
@@ -33,13 +35,13 @@ mod ws;
 mod tests;
 
 use std::future::Future;
-use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use cipdeck_shared::sim::{Device, SimConfig};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
+use tokio_util::task::AbortOnDropHandle;
 
 use self::access::Access;
 use self::app::{App, Parts};
@@ -47,6 +49,7 @@ use self::audit::{Audit, Event, Record};
 use self::blocks::Blocks;
 pub use self::error::RunError;
 use self::history::History;
+use self::listen::{Doors, Listening, Seats, Site};
 use self::permit::{Gate, Policy, RuleError, permit};
 use self::runner::Guard;
 pub use self::settings::Settings;
@@ -55,8 +58,10 @@ use self::store::{Store, StoredLists};
 /// How long viewers have to hear the end, and requests that are being answered after everything else has ended.
 const LAST_ANSWERS: Duration = Duration::from_secs(3);
 
-/// Serves on a listener that is already bound, until `shutdown` is ready; then stops in order: viewers, running
-/// messages and their sessions, the store.
+/// Serves until `shutdown` is ready; then stops in order: viewers, running messages and their sessions, the store.
+///
+/// `listener` is bound to loopback. There the relay stays if the settings say so; if they name an address that others can
+/// reach, it goes there, with TLS, as soon as there is an administrator.
 ///
 /// The log is the caller's: nothing here starts one.
 pub async fn run(
@@ -64,15 +69,16 @@ pub async fn run(
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
 ) -> Result<(), RunError> {
-    serve(settings, listener, shutdown, |_| ()).await
+    serve(settings, listener, shutdown, |_, _| ()).await
 }
 
-/// [`run`]; says when it is ready to answer, and with which set-up code if there is no administrator yet.
+/// [`run`]; says whenever it is ready to answer somewhere, the first time with the set-up code if there is no
+/// administrator yet.
 pub(crate) async fn serve(
     settings: Settings,
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
-    ready: impl FnOnce(Option<String>) + Send,
+    ready: impl FnMut(&Listening, Option<&str>) + Send,
 ) -> Result<(), RunError> {
     serve_with(settings, listener, shutdown, ready, permit).await
 }
@@ -82,13 +88,17 @@ async fn serve_with(
     settings: Settings,
     listener: TcpListener,
     shutdown: impl Future<Output = ()> + Send,
-    ready: impl FnOnce(Option<String>) + Send,
+    mut ready: impl FnMut(&Listening, Option<&str>) + Send,
     gate: Gate,
 ) -> Result<(), RunError> {
     let address = listener.local_addr().map_err(RunError::Listen)?;
     if !address.ip().is_loopback() {
         return Err(RunError::NotLoopback(address));
     }
+    if settings.local.is_some() && !settings.listen.ip().is_loopback() {
+        return Err(RunError::LocalForOthers(settings.listen));
+    }
+    let tls = listen::tls(&settings)?;
     let database = settings.database();
     let no_store = |error| match &database {
         Some(path) => RunError::Store(format!("{}: {error}", path.display())),
@@ -100,29 +110,35 @@ async fn serve_with(
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
     note(&audit, &Record::new(Event::Start, "relay", "").with("version", env!("CARGO_PKG_VERSION")));
     let access = Access::open(store.clone(), audit.clone(), settings.local).await.map_err(no_store)?;
-    let setup_code = if settings.local.is_some() { None } else { access.setup_code() };
+    let mut setup_code = if settings.local.is_some() { None } else { access.setup_code() };
     let stored = store.load_lists().await.map_err(no_store)?;
     let policy = Arc::new(policy(&settings, audit.clone(), &stored)?);
-    policy.lists.listens_on(address);
     let guard = Guard::with_gate(Arc::clone(&policy), gate);
     let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard, history.recorder());
     let blocks = blocks.await.map_err(no_store)?;
-    tracing::info!(server.address = %address, data = ?settings.data, "listening");
+    tracing::info!(data = ?settings.data, "starting");
 
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
+    let renewal = tls.clone().map(|tls| AbortOnDropHandle::new(tokio::spawn(tls::watch(tls, audit.clone()))));
+    let is_set_up = access.is_set_up();
     let parts = Parts { policy, store, access, blocks: blocks.clone(), history: history.clone() };
-    let app = App::new(address, parts, stop.clone());
+    let app = App::new(settings, parts, tls, stop.clone());
     let viewers = app.viewers.clone();
-    let server = axum::serve(listener, http::router(app).into_make_service_with_connect_info::<SocketAddr>())
-        .with_graceful_shutdown(stop.clone().cancelled_owned());
-    let mut server = tokio::spawn(server.into_future());
-    ready(setup_code);
-    let ended = tokio::select! {
-        () = shutdown => None,
-        ended = &mut server => Some(ended),
+    let site = site(app);
+    let mut ready = |listening: &Listening| ready(listening, setup_code.take().as_deref());
+    let mut doors = Doors::open(listener, &site, is_set_up, &mut ready).await;
+    let result = match &mut doors {
+        Ok(doors) => tokio::select! {
+            () = shutdown => Ok(()),
+            error = doors.keep(&site, &mut ready) => Err(error),
+        },
+        Err(_) => Ok(()),
     };
     stop.cancel();
+    if let Ok(doors) = &mut doors {
+        doors.close().await;
+    }
     viewers.close();
     if tokio::time::timeout(LAST_ANSWERS, viewers.wait()).await.is_err() {
         tracing::info!("some viewers did not take their last message");
@@ -131,15 +147,25 @@ async fn serve_with(
     history.close().await;
     // It has heard of the stop.
     let _ = keeper.await;
+    drop(renewal);
     note(&audit, &Record::new(Event::Stop, "relay", ""));
-    match ended {
-        Some(_) => Err(RunError::Stopped),
-        None => match tokio::time::timeout(LAST_ANSWERS, server).await {
-            Ok(Ok(result)) => result.map_err(RunError::Serve),
-            Ok(Err(_)) => Err(RunError::Stopped),
-            // Somebody holds a connection open; everything of value is safe.
-            Err(_) => Ok(()),
-        },
+    if tokio::time::timeout(LAST_ANSWERS, doors?.are_empty()).await.is_err() {
+        tracing::info!("some connections were held open; everything of value is safe");
+    }
+    result
+}
+
+/// What is answered, wherever that will be.
+fn site(app: App) -> Site {
+    let limits = app.settings.limits;
+    Site {
+        listen: app.settings.listen,
+        tls: app.tls.clone(),
+        seats: Seats::new(limits.connections, limits.connections_per_client),
+        router: Box::new(move |address, is_tls| {
+            app.policy.lists.listens_on(address);
+            http::router(app.answering_at(address, is_tls))
+        }),
     }
 }
 

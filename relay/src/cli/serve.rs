@@ -5,17 +5,17 @@ use std::path::PathBuf;
 
 use cipdeck_shared::api::{NewAllowedTarget, Role};
 use clap::Args;
-use tokio::net::TcpListener;
 
 use super::{Exit, Logging, say};
 use crate::error::RunError;
-use crate::settings::{Allow, Given, Local, Settings};
-use crate::{shutdown, telemetry};
+use crate::settings::{Allow, Given, HostName, Local, Settings};
+use crate::{listen, shutdown, telemetry};
 
 /// The flags of `serve`; docs/CONFIGURATION.md describes them.
 #[derive(Debug, Args)]
 pub(super) struct Serve {
-    /// Loopback address and port; port 0 takes a free one. [default: 127.0.0.1:8818]
+    /// Address and port; port 0 takes a free one. Beyond loopback only once there is an administrator, and with TLS.
+    /// [default: 127.0.0.1:8818]
     #[arg(long, value_name = "ADDRESS:PORT")]
     listen: Option<SocketAddr>,
     /// Folder of the database. [default: cipdeck in your folder for application data]
@@ -27,6 +27,9 @@ pub(super) struct Serve {
     /// A target that may be reached: an address, a network or a name, with :PORT or :*, and " via 1,0" or " via *"
     #[arg(long, value_name = "TARGET")]
     allow: Vec<String>,
+    /// A further name under which browsers may call: that of a tunnel, of a container's host, of this machine.
+    #[arg(long = "allow-host", value_name = "NAME[:PORT]")]
+    allow_hosts: Vec<HostName>,
     /// Configuration in TOML; flags override it.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -46,6 +49,7 @@ impl Serve {
             log_format: logging.log_format,
             local: self.local.map(|role| Local { role }),
             allow: Allow { target: self.allow.into_iter().map(by_flag).collect(), write: Vec::new() },
+            allow_hosts: self.allow_hosts,
             ..Given::default()
         };
         let settings = match Settings::resolve(flags, file) {
@@ -72,17 +76,11 @@ fn role(text: &str) -> Result<Role, String> {
 }
 
 async fn listen_and_run(settings: Settings) -> Result<(), RunError> {
-    if !settings.listen.ip().is_loopback() {
-        // Before binding: not even for a moment is there an open port.
-        return Err(RunError::NotLoopback(settings.listen));
-    }
     let shutdown = shutdown::requested();
-    let listener =
-        TcpListener::bind(settings.listen).await.map_err(|source| RunError::Bind(settings.listen, source))?;
-    let address = listener.local_addr().map_err(RunError::Listen)?;
-    crate::serve(settings, listener, shutdown, |setup_code| {
-        // Whoever started the relay waits for this one line.
-        say(&format!("cipdeck listens on http://{address}"));
+    let listener = listen::bind(listen::before_set_up(settings.listen)).await?;
+    crate::serve(settings, listener, shutdown, |listening, setup_code| {
+        // Whoever started the relay waits for what is said here.
+        say(&listening.to_string());
         if let Some(code) = setup_code {
             say(&format!("set-up code: {code}"));
         }

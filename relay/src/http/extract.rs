@@ -1,6 +1,7 @@
 //! Parts of requests, whose rejections are problems like all others.
 
 use std::net::{IpAddr, SocketAddr};
+use std::time::Duration;
 
 use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, Request};
 use axum::http::request::Parts;
@@ -15,6 +16,9 @@ const MAX_BODY: usize = 1024 * 1024;
 
 /// Bytes that are read and thrown away, so that a client who is still writing hears the answer.
 const MAX_DRAINED: usize = 16 * MAX_BODY;
+
+/// Time for a body to arrive.
+const TO_ARRIVE: Duration = Duration::from_secs(30);
 
 /// A body as JSON, at most 1 MB.
 #[derive(Debug)]
@@ -117,6 +121,11 @@ impl<S: Sync> FromRequestParts<S> for Revision {
 }
 
 async fn body(request: Request) -> Result<Vec<u8>, ApiError> {
+    let late = |_| ApiError::Unreadable(format!("the body did not arrive within {} s", TO_ARRIVE.as_secs()));
+    tokio::time::timeout(TO_ARRIVE, arriving(request)).await.map_err(late)?
+}
+
+async fn arriving(request: Request) -> Result<Vec<u8>, ApiError> {
     let mut chunks = request.into_body().into_data_stream();
     let (mut body, mut length) = (Vec::new(), 0_usize);
     while let Some(chunk) = chunks.next().await {
@@ -135,4 +144,19 @@ async fn body(request: Request) -> Result<Vec<u8>, ApiError> {
 fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, ApiError> {
     serde_json::from_slice(body)
         .map_err(|error| ApiError::Unreadable(format!("the body cannot be read: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::body::Body;
+
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_body_that_does_not_end_is_given_up() {
+        let beginning = futures_util::stream::iter([Ok::<_, std::io::Error>("{")]);
+        let endless = Body::from_stream(beginning.chain(futures_util::stream::pending()));
+        let refused = body(Request::new(endless)).await.unwrap_err();
+        assert!(refused.to_string().contains("within 30 s"), "{refused}");
+    }
 }

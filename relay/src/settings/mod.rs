@@ -3,7 +3,9 @@
 
 mod access;
 mod history;
+mod host_name;
 mod limits;
+mod tls;
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -13,7 +15,9 @@ use serde::Deserialize;
 
 pub use self::access::{Allow, Local};
 pub use self::history::HistorySettings;
+pub use self::host_name::{HostName, NoHostName};
 pub use self::limits::Limits;
+pub use self::tls::Tls;
 
 /// Where the relay listens unless told otherwise.
 pub const DEFAULT_LISTEN: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 8818);
@@ -27,7 +31,7 @@ const DATABASE: &str = "cipdeck.sqlite";
 /// Everything that can be configured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Where to listen. Loopback addresses only.
+    /// Where to listen; beyond loopback only once there is an administrator, and with TLS.
     pub listen: SocketAddr,
     /// The folder of the database; `None` keeps blocks in memory and loses them at the end.
     pub data: Option<PathBuf>,
@@ -41,7 +45,11 @@ pub struct Settings {
     pub local: Option<Role>,
     /// What may be reached and written beside what administrators add.
     pub allow: Allow,
-    /// Limits.
+    /// Further names under which the relay may be called.
+    pub allow_hosts: Vec<HostName>,
+    /// The certificate; `None` = one that the relay makes, where it needs one.
+    pub tls: Option<Tls>,
+    /// How much there may be of what others can ask for.
     pub limits: Limits,
 }
 
@@ -75,6 +83,11 @@ pub struct Given {
     /// `[[allow.target]]` and `[[allow.write]]`
     #[serde(default)]
     pub allow: Allow,
+    /// `allow_hosts = ["gateway.plant.local"]`
+    #[serde(default)]
+    pub allow_hosts: Vec<HostName>,
+    /// `[tls]`
+    pub tls: Option<Tls>,
     /// `[limits]`
     #[serde(default)]
     pub limits: Limits,
@@ -91,6 +104,8 @@ impl Settings {
             history: HistorySettings::default(),
             local: None,
             allow: Allow::default(),
+            allow_hosts: Vec::new(),
+            tls: None,
             limits: Limits::default(),
         }
     }
@@ -127,7 +142,9 @@ impl Settings {
                 target: [flags.allow.target, file.allow.target].concat(),
                 write: [flags.allow.write, file.allow.write].concat(),
             },
-            limits: file.limits,
+            allow_hosts: [flags.allow_hosts, file.allow_hosts].concat(),
+            tls: file.tls.map(Tls::checked).transpose()?,
+            limits: file.limits.checked()?,
         })
     }
 
@@ -180,6 +197,12 @@ pub enum SettingsError {
         /// What it may say.
         max: u32,
     },
+    /// A certificate without its key, or the other way round.
+    #[error("the configuration has a certificate without its other half: give {0}, too")]
+    HalfCertificate(&'static str),
+    /// A number that makes no sense.
+    #[error("the configuration has a number out of its range: {0}")]
+    OutOfRange(String),
     /// Neither a flag nor a home folder.
     #[error("no folder for data: this user has no home folder; give one with --data")]
     NoDataFolder,
@@ -240,6 +263,22 @@ mod tests {
     }
 
     #[test]
+    fn what_makes_no_sense_is_refused_in_words() {
+        for (text, expected) in [
+            ("[tls]\ncert = \"a.pem\"", "give tls.key, too"),
+            ("[tls]\nkey = \"a.pem\"", "give tls.cert, too"),
+            ("[limits]\nconnections = 0", "limits.connections must be 8 to 65536"),
+            ("[limits]\nconnections_per_client = 513", "must be 1 to limits.connections"),
+        ] {
+            let refused = Settings::resolve(Given::default(), Given::parse(text).unwrap()).unwrap_err();
+            assert!(refused.to_string().contains(expected), "{refused}");
+        }
+        for text in ["allow_hosts = [\"https://a\"]", "[tls]\ncrt = \"a\"", "[limits]\nconnections = -1"] {
+            Given::parse(text).unwrap_err();
+        }
+    }
+
+    #[test]
     fn every_key_is_documented() {
         let text = include_str!("../../../docs/CONFIGURATION.md");
         let keys = [
@@ -254,6 +293,12 @@ mod tests {
             "allow.target",
             "allow.write",
             "limits.messages_per_second",
+            "allow_hosts",
+            "tls.cert",
+            "tls.key",
+            "tls.hsts",
+            "limits.connections",
+            "limits.connections_per_client",
         ];
         for key in keys {
             assert!(text.contains(&format!("| `{key}` |")), "docs/CONFIGURATION.md does not describe {key}");
@@ -261,10 +306,11 @@ mod tests {
         // The example in the document holds every key and is accepted as it stands.
         let example = text.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let given = Given::parse(example).unwrap();
-        let Given { listen, data, log, log_format, history, local, allow, limits } = given;
+        let Given { listen, data, log, log_format, history, local, allow, allow_hosts, tls, limits } = given;
         assert!(listen.is_some() && data.is_some() && log.is_some() && log_format.is_some());
         assert_eq!(history, Some(HistorySettings::default()), "the example shows the defaults");
         assert!(local.is_some() && limits != Limits::default());
         assert_eq!((allow.target.len(), allow.write.len()), (1, 1));
+        assert!(!allow_hosts.is_empty() && tls.is_some_and(|tls| tls.files().is_some() && tls.hsts));
     }
 }
