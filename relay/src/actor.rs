@@ -228,8 +228,7 @@ impl Life {
 mod tests {
     use super::*;
 
-    const LIMITS: Limits =
-        Limits { idle: Some(Duration::from_secs(900)), absolute: Duration::from_secs(1_500) };
+    const LIMITS: Limits = Limits { idle: Some(Duration::from_mins(15)), absolute: Duration::from_mins(25) };
 
     #[tokio::test(start_paused = true)]
     async fn a_session_ends_when_nobody_is_there_and_in_any_case() {
@@ -237,12 +236,12 @@ mod tests {
         tokio::time::advance(Duration::from_secs(899)).await;
         assert!(life.is_live());
         life.touch();
-        tokio::time::advance(Duration::from_secs(600)).await;
+        tokio::time::advance(Duration::from_mins(10)).await;
         assert!(life.is_live());
         tokio::time::advance(Duration::from_secs(1)).await;
         assert!(!life.is_live(), "1,500 s in all");
         let idle = Life::begin(2, LIMITS);
-        tokio::time::advance(Duration::from_secs(900)).await;
+        tokio::time::advance(Duration::from_mins(15)).await;
         idle.touch();
         assert!(!idle.is_live(), "an ended session stays ended");
     }

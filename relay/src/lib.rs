@@ -113,7 +113,7 @@ async fn serve_with(
     let mut setup_code = if settings.local.is_some() { None } else { access.setup_code() };
     let stored = store.load_lists().await.map_err(no_store)?;
     let policy = Arc::new(policy(&settings, audit.clone(), &stored)?);
-    let guard = Guard::with_gate(Arc::clone(&policy), gate);
+    let guard = Guard::new(Arc::clone(&policy), gate);
     let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard, history.recorder());
     let blocks = blocks.await.map_err(no_store)?;
     tracing::info!(data = ?settings.data, "starting");

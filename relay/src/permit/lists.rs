@@ -126,7 +126,7 @@ impl Lists {
     pub(super) fn allow(&self, sending: &Sending) -> Result<(), Denied> {
         let Target::Network(endpoint) = &sending.target else { return Ok(()) };
         let lists = self.read();
-        if let Some(route) = sending.uncovered(lists.targets.iter().map(|entry| &entry.rule)) {
+        if let Some(route) = sending.uncovered(&lists.targets.iter().map(|entry| &entry.rule)) {
             return Err(Denied::Target(place(&sending.target, route)));
         }
         match &endpoint.host {

@@ -35,7 +35,7 @@ pub(crate) fn permit(policy: &Policy, question: &Question<'_>) -> Result<(), Den
         return Err(Denied::OnlyLooks);
     }
     policy.lists.allow(sending)?;
-    if !actor.scope().is_empty() && sending.uncovered(actor.scope().iter()).is_some() {
+    if !actor.scope().is_empty() && sending.uncovered(&actor.scope().iter()).is_some() {
         return Err(Denied::OutOfScope);
     }
     if sending.access.may_write() {

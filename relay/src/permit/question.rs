@@ -72,7 +72,7 @@ impl Sending {
     /// The first route that no rule covers. The built-in device is no target.
     pub(super) fn uncovered<'a>(
         &self,
-        rules: impl Iterator<Item = &'a TargetRule> + Clone,
+        rules: &(impl Iterator<Item = &'a TargetRule> + Clone),
     ) -> Option<&Epath> {
         let Target::Network(endpoint) = &self.target else { return None };
         self.routes.iter().find(|route| !rules.clone().any(|rule| rule.covers(endpoint, route)))

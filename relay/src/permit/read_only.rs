@@ -32,13 +32,11 @@ impl ReadOnly {
 
     /// Turns it on. There is no way back from here.
     pub(crate) fn turn_on(&self) -> io::Result<()> {
-        match &self.marker {
-            Some(marker) => std::fs::write(marker, TEXT),
-            None => {
-                self.fallback.store(true, Ordering::Relaxed);
-                Ok(())
-            }
-        }
+        let Some(marker) = &self.marker else {
+            self.fallback.store(true, Ordering::Relaxed);
+            return Ok(());
+        };
+        std::fs::write(marker, TEXT)
     }
 
     /// Turns it off: for local access only.

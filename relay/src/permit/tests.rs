@@ -54,7 +54,7 @@ struct Person {
 }
 
 fn person(role: Role) -> Person {
-    let limits = Limits { idle: None, absolute: Duration::from_secs(12 * 3_600) };
+    let limits = Limits { idle: None, absolute: Duration::from_hours(12) };
     let (standing, life) = (Arc::new(Standing::new(Some(role))), Arc::new(Life::begin(1, limits)));
     let actor =
         Actor::in_session("anna", ActorKind::Person, "10.0.0.9", Arc::clone(&standing), Arc::clone(&life));
@@ -223,7 +223,7 @@ async fn a_block_that_resumes_never_writes() {
 #[tokio::test]
 async fn a_token_is_limited_to_its_scope_and_ends_with_itself() {
     let policy = policy(&["10.0.0.0/24"]);
-    let limits = Limits { idle: None, absolute: Duration::from_secs(60) };
+    let limits = Limits { idle: None, absolute: Duration::from_mins(1) };
     let (standing, life) = (Arc::new(Standing::new(Some(Role::Operator))), Arc::new(Life::begin(1, limits)));
     let scope = vec!["10.0.0.1".parse().unwrap()];
     let token = Actor::with_token("nightly", "", standing, Arc::clone(&life), scope);
@@ -255,7 +255,7 @@ async fn a_write_needs_an_open_window_and_the_revision_that_was_seen() {
     policy.open_window(&owner.actor, Some(10)).unwrap();
     assert_eq!(ask(&policy, &engineer, &write, confirmed.as_ref()), Err(Denied::OtherWindow));
     let confirmed = policy.hypothetical(1);
-    advance(Duration::from_secs(600)).await;
+    advance(Duration::from_mins(10)).await;
     assert_eq!(
         ask(&policy, &engineer, &write, confirmed.as_ref()),
         Err(Denied::NoWindow),

@@ -57,7 +57,7 @@ pub(crate) struct Confirmed {
 }
 
 /// How long a ticket is good.
-pub(crate) const GOOD_FOR: Duration = Duration::from_secs(60);
+pub(crate) const GOOD_FOR: Duration = Duration::from_mins(1);
 
 /// Tickets that can be out at once; the oldest go first.
 const MAX_TICKETS: usize = 1_024;

@@ -86,7 +86,7 @@ impl Window {
         if !is_person || !owner.is_present() || !owner.role().is_some_and(Role::may_write) {
             return Err(NotOpened::NotAllowed);
         }
-        let (length, now) = (Duration::from_secs(u64::from(minutes) * 60), Instant::now());
+        let (length, now) = (Duration::from_mins(minutes.into()), Instant::now());
         let mut state = lock(&self.0);
         if let Some(open) = state.open.as_ref().filter(|open| open.ending(now).is_none()) {
             return Err(NotOpened::AlreadyOpen(open.owner.name().to_owned()));

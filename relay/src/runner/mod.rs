@@ -34,7 +34,7 @@ use self::link::Socket;
 use self::trail::Trail;
 pub use self::trail::{Direction, Ends};
 pub(crate) use self::trail::{Tap, Trace};
-use crate::permit::{Gate, Grants, Lists, Policy, Sending, permit};
+use crate::permit::{Gate, Grants, Lists, Policy, Sending};
 
 /// Who hears what blocks do. Called under the runner's lock: must not wait and must not call back.
 pub(crate) trait Observer: Send + Sync + 'static {
@@ -67,13 +67,8 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    /// The rules of a relay.
-    pub(crate) fn new(policy: Arc<Policy>) -> Self {
-        Self::with_gate(policy, permit)
-    }
-
-    /// With another decision, to show what this one is good for.
-    pub(crate) fn with_gate(policy: Arc<Policy>, gate: Gate) -> Self {
+    /// The rules of a relay, and who decides by them.
+    pub(crate) fn new(policy: Arc<Policy>, gate: Gate) -> Self {
         Self { policy, gate }
     }
 }

@@ -6,7 +6,7 @@ use super::*;
 use crate::actor::Actor;
 use crate::audit::Audit;
 use crate::client::Nobody;
-use crate::permit::Order;
+use crate::permit::{Order, permit};
 
 const BLOCK: BlockId = BlockId(1);
 
@@ -63,7 +63,7 @@ async fn a_run_is_answered_with_done_before_in_falls() {
 /// Twin of the next test: together they show that the gate alone keeps the write from the device.
 #[tokio::test]
 async fn a_write_that_nobody_confirmed_never_reaches_the_device() {
-    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(policy()));
+    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(policy(), permit));
     let (before, status) = write_past_the_command_check(&runner).await;
     assert_eq!(status.phase, Phase::Failed);
     let cause = status.cause.unwrap();
@@ -77,7 +77,7 @@ async fn without_the_gate_the_same_write_would_reach_the_device() {
     // The command is refused as always; only what stands before the wire lets everything pass.
     let gate: Gate =
         |policy, question| if question.shot.is_some() { Ok(()) } else { permit(policy, question) };
-    let runner = Runner::guarded(Arc::new(Nobody), Guard::with_gate(policy(), gate));
+    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(policy(), gate));
     let (before, status) = write_past_the_command_check(&runner).await;
     assert_eq!(status.phase, Phase::Done);
     assert_ne!(output(&runner).await, before);
@@ -107,7 +107,7 @@ async fn a_confirmed_write_is_sent_and_a_changed_one_has_to_be_confirmed_again()
     let policy = policy();
     policy.open_window(&engineer(), None).unwrap();
     let confirmed = |revision| Some(Order { actor: engineer(), confirmed: policy.hypothetical(revision) });
-    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(Arc::clone(&policy)));
+    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(Arc::clone(&policy), permit));
     runner.put(BLOCK, "", 1, Ok(write(0x11)));
     assert!(runner.run(BLOCK, confirmed(1)).await.unwrap().view.q);
     assert_eq!(output(&runner).await, "11".repeat(32));
@@ -196,7 +196,7 @@ async fn a_panic_in_one_connection_is_survived() {
         assert!(question.shot.is_none() || HAS_PANICKED.swap(true, Ordering::SeqCst), "on purpose, once");
         permit(policy, question)
     };
-    let runner = Runner::guarded(Arc::new(Nobody), Guard::with_gate(policy(), gate));
+    let runner = Runner::guarded(Arc::new(Nobody), Guard::new(policy(), gate));
     runner.put(BLOCK, "", 1, Ok(name_of_the_demo_device()));
     assert!(runner.run(BLOCK, Some(Order::read(engineer()))).await.unwrap().view.q);
     assert!(HAS_PANICKED.load(Ordering::SeqCst));

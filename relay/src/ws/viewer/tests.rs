@@ -12,6 +12,7 @@ use crate::actor::{Life, Limits, Standing};
 use crate::audit::Audit;
 use crate::draft::Draft;
 use crate::history::Recorder;
+use crate::permit::permit;
 use crate::runner::Guard;
 use crate::store::Store;
 
@@ -41,9 +42,9 @@ impl Page {
     async fn of(role: Role) -> Self {
         let policy = Arc::new(Policy::new(None, Audit::open(None).unwrap(), 0));
         let store = Store::open(None).await.unwrap();
-        let guard = Guard::new(Arc::clone(&policy));
+        let guard = Guard::new(Arc::clone(&policy), permit);
         let blocks = Blocks::open(store, Arc::clone(&policy), guard, Recorder::default()).await.unwrap();
-        let limits = Limits { idle: None, absolute: Duration::from_secs(60) };
+        let limits = Limits { idle: None, absolute: Duration::from_mins(1) };
         let (standing, life) = (Arc::new(Standing::new(Some(role))), Arc::new(Life::begin(1, limits)));
         let actor = Actor::in_session("anna", ActorKind::Person, "", standing, Arc::clone(&life));
         let (to, frames) = mpsc::channel(1);
