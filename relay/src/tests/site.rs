@@ -12,7 +12,7 @@ use reqwest::{Client, Method};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::oneshot;
+use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
@@ -70,17 +70,17 @@ impl Site {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         let (stop, stopped) = oneshot::channel::<()>();
-        let (told, code) = oneshot::channel();
+        let (told, mut code) = mpsc::channel(1);
         let running = tokio::spawn(crate::serve_with(
             settings,
             listener,
             async {
                 let _ = stopped.await;
             },
-            |code| told.send(code.unwrap()).unwrap(),
+            move |_, code| told.try_send(code.unwrap().to_owned()).unwrap(),
             gate,
         ));
-        let code = code.await.unwrap();
+        let code = code.recv().await.unwrap();
         let stranger = Person::new(address);
         let set_up = json!({ "code": code, "name": "admin", "password": PASSWORD });
         let admin = stranger.sign_in_at("setup", &set_up).await;
