@@ -3,17 +3,19 @@
 use yew::prelude::*;
 
 use crate::{
-    browser,
+    access::{refused, who, write_banner},
+    address, browser,
     editor::DraftStore,
     frame_stats::FrameStats,
+    hooks::{use_link, use_second, use_session, use_workbench},
     i18n::tr,
-    net::Relay,
+    net::{Relay, session},
     notice::NoticeStore,
     pages::{
         connection::Connection, connections::ConnectionsPage, deck::DeckPage, help::HelpPage,
         monitor::MonitorPage, not_found::not_found,
     },
-    route::{self, Route, link, use_route},
+    route::{Route, link, use_route},
     store::RowStore,
     theme::ThemeToggle,
     workbench::Workbench,
@@ -44,21 +46,30 @@ fn open() -> Workbench {
     );
     let relay = Relay::new(rows.clone(), Callback::from(move |ms| stats.spend(ms)));
     relay.connect();
-    route::listen();
+    session::watch_activity();
+    address::listen();
     Workbench::new(rows, drafts, relay, NoticeStore::default())
 }
 
 #[component]
 fn Frame() -> Html {
     let route = use_route();
+    let link_state = use_link();
+    let bench = use_workbench();
+    let writing = bench.relay().writing();
+    let view = use_session();
+    // What is below has no new properties, and is not drawn again.
+    use_second(writing.state.window.is_some());
     html! { <>
         <header class="bar">
             { link(Route::Deck, "brand", html! { "cipdeck" }) }
             { navigation(route) }
             <Connection />
+            { who(view.as_deref(), writing.state.read_only) }
             <ThemeToggle />
         </header>
-        <main>{ page(route) }</main>
+        { write_banner(&writing) }
+        <main>{ if bench.relay().is_closed_to_us() { refused(&link_state) } else { page(route) } }</main>
     </> }
 }
 
@@ -78,6 +89,7 @@ fn navigation(route: Route) -> Html {
                 { entry(Route::Monitor, tr!("nav.monitor")) }
                 { entry(Route::Connections, tr!("nav.connections")) }
                 { entry(Route::Help, tr!("nav.help")) }
+                <li><a href="/office">{ tr!("nav.office") }</a></li>
             </ul>
         </nav>
     }

@@ -35,6 +35,13 @@ pub fn time_of_day(at: &str) -> String {
     Date::new(&at.into()).to_locale_time_string("en-GB").into()
 }
 
+/// `2026-11-22 07:36:12`: date and time of day here of a time in RFC 3339.
+pub fn date_and_time(at: &str) -> String {
+    let date = Date::new(&at.into());
+    // Sweden writes dates as the standard does.
+    date.to_locale_string("sv-SE", &JsValue::UNDEFINED).into()
+}
+
 /// Calls once before the next picture is drawn.
 pub fn before_next_frame(call: Box<dyn FnOnce()>) {
     let closure = Closure::once_into_js(call);
@@ -122,6 +129,14 @@ pub fn offer(name: &str, function: impl Fn() -> JsValue + 'static) {
     }
     // Lives as long as the page.
     closure.forget();
+}
+
+/// Calls a function at every such event of the document.
+pub fn on_document(event: &str, function: &js_sys::Function) {
+    if let Some(document) = document() {
+        // Refused only for a listener that is there already.
+        let _ = document.add_event_listener_with_callback(event, function);
+    }
 }
 
 fn document() -> Option<Document> {

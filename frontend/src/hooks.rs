@@ -2,13 +2,14 @@
 
 use std::{cell::Cell, rc::Rc};
 
+use cipdeck_shared::api::SessionView;
 use gloo_timers::callback::Interval;
 use yew::prelude::*;
 
 use crate::{
     browser,
     editor::Draft,
-    net::Link,
+    net::{Link, session},
     notice::Notice,
     store::{DeckId, Row},
     workbench::Workbench,
@@ -66,6 +67,17 @@ pub fn use_link() -> Link {
         move || drop(watch)
     });
     bench.relay().link()
+}
+
+/// Who is here, as the relay says; `None` before it has said anything.
+#[hook]
+pub fn use_session() -> Option<Rc<SessionView>> {
+    let update = use_force_update();
+    use_effect_with((), move |()| {
+        let watch = session::watch(Callback::from(move |()| update.force_update()));
+        move || drop(watch)
+    });
+    session::view()
 }
 
 /// What is to be told about an entry.

@@ -1,13 +1,10 @@
-//! Texts. All of them are in `locales/`.
+//! Texts. All of them are in `locales/`; build.rs makes them the tables that are searched here.
 
-use std::fmt::Display;
+use std::{fmt::Display, sync::LazyLock};
 
 use yew::AttrValue;
 
 /// A text of the page: `tr!("list.new")`, `tr!("field.byte_count", count = 3)`.
-///
-/// Calls a function, where rust-i18n's own macro would put the whole search into every place that uses it: that was a
-/// tenth of the page's size.
 macro_rules! tr {
     ($key:literal) => {
         $crate::i18n::text($key)
@@ -18,30 +15,51 @@ macro_rules! tr {
 }
 pub(crate) use tr;
 
-/// The text of a key; the key itself where the locale has none, which a test rules out.
+/// Keys and their texts.
+pub(crate) struct Texts(Vec<(&'static str, &'static str)>);
+
+impl Texts {
+    /// One `key<TAB>text` per line, in the order of the keys.
+    pub(crate) fn read(table: &'static str) -> Self {
+        Self(table.lines().filter_map(|line| line.split_once('\t')).collect())
+    }
+
+    /// The text of a key.
+    pub(crate) fn get(&self, key: &str) -> Option<&'static str> {
+        let place = self.0.binary_search_by(|(other, _)| (*other).cmp(key)).ok()?;
+        self.0.get(place).map(|(_, text)| *text)
+    }
+}
+
+static PAGE: LazyLock<Texts> =
+    LazyLock::new(|| Texts::read(include_str!(concat!(env!("OUT_DIR"), "/page.tsv"))));
+
+/// The text of a key; the key itself where there is none, which a test rules out.
 #[inline(never)]
 pub(crate) fn text(key: &'static str) -> AttrValue {
-    try_text(key).map_or(AttrValue::Static(key), AttrValue::from)
+    AttrValue::Static(PAGE.get(key).unwrap_or(key))
 }
 
 /// The text of a key with its `%{name}`s replaced.
 #[inline(never)]
 pub(crate) fn filled(key: &'static str, values: &[(&'static str, &dyn Display)]) -> AttrValue {
-    let (names, values): (Vec<_>, Vec<_>) =
-        values.iter().map(|(name, value)| (*name, value.to_string())).unzip();
-    rust_i18n::replace_patterns(&text(key), &names, &values).into()
+    fill(&text(key), values.iter().map(|(name, value)| (*name, value.to_string()))).into()
 }
 
 /// The text of a validation rule, by its key and arguments.
 pub(crate) fn rule_text(key: &str, arguments: &[(&'static str, String)]) -> String {
-    let (names, values): (Vec<_>, Vec<_>) = arguments.iter().cloned().unzip();
     let text = try_text(&format!("rule.{key}")).unwrap_or_else(|| key.to_owned());
-    rust_i18n::replace_patterns(&text, &names, &values)
+    fill(&text, arguments.iter().cloned())
 }
 
-/// A text whose key is put together at run time, or `None` where the locale has none.
+/// A text whose key is put together at run time, or `None` where there is none.
 pub(crate) fn try_text(key: &str) -> Option<String> {
-    crate::_rust_i18n_try_translate(&rust_i18n::locale(), key).map(std::borrow::Cow::into_owned)
+    PAGE.get(key).map(str::to_owned)
+}
+
+/// Puts values where their names are.
+pub(crate) fn fill(text: &str, values: impl Iterator<Item = (&'static str, String)>) -> String {
+    values.fold(text.to_owned(), |text, (name, value)| text.replace(&format!("%{{{name}}}"), &value))
 }
 
 #[cfg(test)]

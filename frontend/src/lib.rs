@@ -6,12 +6,14 @@
 //! | [`store`] | the rows of the deck, outside the virtual DOM |
 //! | [`net`] | the relay: socket, REST, when to come back |
 //! | [`demo`] | engine and simulated device in the browser alone |
+//! | [`access`] | who is here, what they may, and whether something may be written now |
 //! | [`workbench`] | what can be done with a block, and where it runs |
 //! | [`kit`] | small components on native elements |
 //! | [`pages`] | what people see |
+//! | [`office`] | the second document: users, lists, audit, history |
 
-rust_i18n::i18n!("locales", fallback = "en");
-
+pub mod access;
+pub mod address;
 pub mod app;
 pub mod browser;
 pub mod demo;
@@ -22,17 +24,28 @@ mod i18n;
 pub mod kit;
 pub mod net;
 pub mod notice;
+pub mod office;
 pub mod pages;
 pub mod route;
 pub mod store;
 mod theme;
 pub mod workbench;
 
-/// Puts the page into the document's body.
+/// Puts the workbench into the document's body.
 pub fn start() {
+    say_crashes();
+    yew::Renderer::<app::App>::new().render();
+}
+
+/// Puts the office into the document's body.
+pub fn start_office() {
+    say_crashes();
+    yew::Renderer::<office::Office>::new().render();
+}
+
+fn say_crashes() {
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
         browser::show_crash(&i18n::filled("crash", &[("place", &place)]));
     }));
-    yew::Renderer::<app::App>::new().render();
 }

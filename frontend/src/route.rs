@@ -1,11 +1,13 @@
-//! The addresses of the pages, and how to get there.
+//! The addresses of the workbench's pages, and how to get there.
 //!
 //! A hundred lines instead of yew-router, which cost 28 kB of a page that may have 400 (gzipped).
 
-use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use yew::prelude::*;
 
-use crate::store::{DeckId, Watchers};
+use crate::{
+    address::{self, use_path},
+    store::DeckId,
+};
 
 /// A page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,55 +55,20 @@ impl Route {
     }
 }
 
-// The address is the browser's: there is one per page, whoever asks.
-thread_local! {
-    static WATCHERS: Watchers = Watchers::default();
-}
-
 /// Goes to a page.
 pub fn go(to: Route) {
-    if let Some(history) = history() {
-        // Refused only for an address of another server.
-        let _ = history.push_state_with_url(&JsValue::NULL, "", Some(&to.path()));
-    }
-    wake();
-}
-
-/// Listens to the browser's own buttons.
-pub fn listen() {
-    let moved = Closure::<dyn Fn()>::new(wake);
-    if let Some(window) = web_sys::window() {
-        window.set_onpopstate(Some(moved.as_ref().unchecked_ref()));
-    }
-    // Lives as long as the page.
-    moved.forget();
+    address::go(&to.path());
 }
 
 /// Where we are; renders again when that changes.
 #[hook]
 pub fn use_route() -> Route {
-    let update = use_force_update();
-    use_effect_with((), move |()| {
-        let wake = Callback::from(move |()| update.force_update());
-        let watch = WATCHERS.with(|watchers| watchers.watch(wake));
-        move || drop(watch)
-    });
-    let path = web_sys::window().and_then(|window| window.location().pathname().ok());
-    Route::read(&path.unwrap_or_default())
+    Route::read(&use_path())
 }
 
 /// A link to a page.
 pub fn link(to: Route, class: &'static str, words: Html) -> Html {
-    let onclick = move |event: MouseEvent| {
-        // With a key held, people want what the browser does: a new tab, a download.
-        let plain = event.button() == 0
-            && !(event.ctrl_key() || event.meta_key() || event.shift_key() || event.alt_key());
-        if plain {
-            event.prevent_default();
-            go(to);
-        }
-    };
-    html! { <a href={to.path()} {class} {onclick}>{ words }</a> }
+    address::link(to.path(), class, words)
 }
 
 /// Where to go instead.
@@ -114,21 +81,8 @@ pub struct RedirectProps {
 /// Replaces this address: the back button does not lead here again.
 #[component]
 pub fn Redirect(props: &RedirectProps) -> Html {
-    use_effect_with(props.to, |to| {
-        if let Some(history) = history() {
-            let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&to.path()));
-        }
-        wake();
-    });
+    use_effect_with(props.to, |to| address::replace(&to.path()));
     html! {}
-}
-
-fn history() -> Option<web_sys::History> {
-    web_sys::window()?.history().ok()
-}
-
-fn wake() {
-    WATCHERS.with(Clone::clone).wake();
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use flate2::{Compression, write::GzEncoder};
 
 use crate::{
     frontend::{self, Profile},
+    page::{DOCUMENTS, Document},
     process::{cargo, run},
     report::Report,
     toolchain::{self, Preference},
@@ -29,34 +30,60 @@ pub(crate) fn build(report: &mut Report, preference: Preference) -> Result<()> {
     Ok(())
 }
 
-/// Prints each file's size, and fails where what a browser loads is over the budget.
+/// Prints each file's size, and fails where what a browser loads for one document is over the budget.
 fn measure(page: &Path) -> Result<()> {
-    let mut total = 0;
-    for (name, content) in loaded(page, page)? {
-        let zipped = gzipped(&content)?;
-        total += zipped;
-        println!("    {:>7} kB {:>7} kB gz  {name}", content.len().div_ceil(1000), zipped.div_ceil(1000));
-    }
-    println!("    {:>21} kB gz of {} kB", total.div_ceil(1000), BUDGET / 1000);
-    if total > BUDGET {
-        bail!("the page is larger than its budget");
+    for document in DOCUMENTS {
+        let mut total = 0;
+        for (name, content) in loaded(page, document)? {
+            let zipped = gzipped(&content)?;
+            total += zipped;
+            println!("    {:>7} kB {:>7} kB gz  {name}", content.len().div_ceil(1000), zipped.div_ceil(1000));
+        }
+        println!(
+            "    {:>17}.{} kB gz of {} kB  {}",
+            total / 1000,
+            total % 1000 / 100,
+            BUDGET / 1000,
+            document.index
+        );
+        if total > BUDGET {
+            bail!("{} is larger than its budget", document.index);
+        }
     }
     Ok(())
 }
 
-/// The wasm, the scripts and the styles.
-fn loaded(page: &Path, folder: &Path) -> Result<Vec<(String, Vec<u8>)>> {
+/// The wasm, the scripts and the styles that a document names, and the scripts that these bring along.
+fn loaded(page: &Path, document: Document) -> Result<Vec<(String, Vec<u8>)>> {
+    let index = page.join(document.index);
+    let index = fs::read_to_string(&index).with_context(|| format!("cannot read {}", index.display()))?;
     let mut files = Vec::new();
-    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
-        let path = entry?.path();
-        if path.is_dir() {
-            files.extend(loaded(page, &path)?);
-        } else if path.extension().is_some_and(|kind| kind == "wasm" || kind == "js" || kind == "css") {
-            files.push((path.strip_prefix(page)?.display().to_string(), fs::read(&path)?));
+    for name in index.split('"').filter_map(|quoted| quoted.strip_prefix('/')) {
+        let kind = Path::new(name).extension();
+        if kind.is_some_and(|kind| kind == "wasm" || kind == "js" || kind == "css") {
+            let path = page.join(name);
+            let content = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            files.push((name.to_owned(), content));
         }
     }
+    snippets(&page.join("snippets"), &mut files)?;
     files.sort();
     Ok(files)
+}
+
+fn snippets(folder: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
+    if !folder.is_dir() {
+        return Ok(());
+    }
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            snippets(&path, files)?;
+        } else {
+            files.push((path.display().to_string(), fs::read(&path)?));
+        }
+    }
+    Ok(())
 }
 
 /// The length after gzip, as a server sends it.
@@ -80,7 +107,7 @@ fn kilobytes(path: &Path) -> Result<u64> {
     Ok(fs::metadata(path)?.len().div_ceil(1000))
 }
 
-/// Bytes of wasm, JavaScript and CSS together, after gzip.
+/// Bytes of a document's wasm, JavaScript and CSS together, after gzip.
 const BUDGET: usize = 400_000;
 
 #[cfg(test)]
@@ -99,9 +126,15 @@ mod tests {
             state.to_le_bytes()[3]
         };
         let content: Vec<u8> = (0..=BUDGET).map(noise).collect();
-        fs::write(page.path().join("page.wasm"), &content).expect("written");
-        assert!(measure(page.path()).is_err());
-        fs::write(page.path().join("page.wasm"), &content[..1000]).expect("written");
+        for document in DOCUMENTS {
+            let module = format!("{}.wasm", document.name);
+            fs::write(page.path().join(document.index), format!("<link href=\"/{module}\">"))
+                .expect("written");
+            fs::write(page.path().join(module), &content[..1000]).expect("written");
+        }
         assert!(measure(page.path()).is_ok());
+        fs::write(page.path().join("office.wasm"), &content).expect("written");
+        let error = measure(page.path()).expect_err("too large").to_string();
+        assert!(error.contains("office.html"), "{error}");
     }
 }

@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use wasm_bindgen_cli_support::Bindgen;
 
 use crate::{
-    page::{self, Sources},
+    page::{self, DOCUMENTS, Document, Files, Sources},
     process::run,
     report::Report,
     toolchain::{WASM, WasmToolchain},
@@ -39,12 +39,12 @@ impl Profile {
 /// Builds the page. `frontend/dist` is touched only where its content changes, so that the relay is not linked again for nothing.
 pub(crate) fn build(report: &mut Report, wasm: &WasmToolchain, profile: Profile) -> Result<()> {
     report.step("page: compile to wasm32", || compile(wasm, profile))?;
-    let compiled = wasm.target().join(WASM).join(profile.name()).join(format!("{BINARY}.wasm"));
+    let compiled = wasm.target().join(WASM).join(profile.name());
     report.step("page: wasm-bindgen, hashed names, frontend/dist", || lay_down(&compiled, profile))
 }
 
 fn compile(wasm: &WasmToolchain, profile: Profile) -> Result<()> {
-    run(wasm.cargo().args(["build", "--package", "cipdeck-frontend", "--bin", BINARY]).args([
+    run(wasm.cargo().args(["build", "--package", "cipdeck-frontend", "--bins"]).args([
         "--target",
         WASM,
         "--profile",
@@ -53,23 +53,31 @@ fn compile(wasm: &WasmToolchain, profile: Profile) -> Result<()> {
 }
 
 fn lay_down(compiled: &Path, profile: Profile) -> Result<()> {
-    let module = fs::read(compiled).with_context(|| format!("cannot read {}", compiled.display()))?;
+    let mut modules = Vec::new();
+    for document in DOCUMENTS {
+        let path = compiled.join(format!("{}.wasm", document.binary));
+        modules.push(fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?);
+    }
     let sources = Sources::read(&workspace::root().join("frontend"))?;
-    let state = fingerprint(&module, &sources);
+    let state = fingerprint(&modules, &sources);
     let (dist, stamp) = (workspace::page(), workspace::root().join("frontend").join("dist.stamp"));
-    if dist.join("index.html").is_file() && fs::read_to_string(&stamp).is_ok_and(|last| last == state) {
+    let is_there = DOCUMENTS.iter().all(|document| dist.join(document.index).is_file());
+    if is_there && fs::read_to_string(&stamp).is_ok_and(|last| last == state) {
         println!("    unchanged");
         return Ok(());
     }
-    let files = page::assemble(&sources, bind(module, profile)?)?;
+    let mut files = Files::new();
+    for (document, module) in DOCUMENTS.into_iter().zip(modules) {
+        page::assemble(&mut files, document, &sources, bind(document, module, profile)?)?;
+    }
     page::write(&dist, &files)?;
     fs::write(&stamp, state).context("cannot write the page's stamp")
 }
 
 /// The JavaScript and the wasm of a compiled module, and the snippets that its crates bring along.
-fn bind(module: Vec<u8>, profile: Profile) -> Result<page::Bound> {
+fn bind(document: Document, module: Vec<u8>, profile: Profile) -> Result<page::Bound> {
     let mut output = Bindgen::new()
-        .input_bytes("page", module)
+        .input_bytes(document.name, module)
         .web(true)?
         .typescript(false)
         .omit_default_module_path(true)
@@ -91,12 +99,9 @@ fn bind(module: Vec<u8>, profile: Profile) -> Result<page::Bound> {
 }
 
 /// Changes when anything changes that the page is made of.
-fn fingerprint(module: &[u8], sources: &Sources) -> String {
+fn fingerprint(modules: &[Vec<u8>], sources: &Sources) -> String {
     let mut hasher = DefaultHasher::new();
-    module.hash(&mut hasher);
+    modules.hash(&mut hasher);
     sources.hash(&mut hasher);
     format!("{:016x}", hasher.finish())
 }
-
-/// The frontend's binary.
-const BINARY: &str = "cipdeck-page";

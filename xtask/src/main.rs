@@ -10,6 +10,7 @@ mod page;
 mod process;
 mod report;
 mod run;
+mod squeeze;
 mod system;
 mod test;
 mod toolchain;

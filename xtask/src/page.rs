@@ -10,13 +10,45 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 
+use crate::squeeze;
+
+/// A document of its own, with a module of its own: what somebody only looks at once a day is not loaded every day.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Document {
+    /// What its files are called.
+    pub(crate) name: &'static str,
+    /// The frontend's binary.
+    pub(crate) binary: &'static str,
+    /// The file that a browser asks for.
+    pub(crate) index: &'static str,
+    /// Its style sheets in `frontend/styles`, in this order.
+    styles: &'static [&'static str],
+}
+
+/// Both documents.
+pub(crate) const DOCUMENTS: [Document; 2] = [
+    Document {
+        name: "page",
+        binary: "cipdeck-page",
+        index: "index.html",
+        styles: &["tokens", "base", "kit", "access", "pages"],
+    },
+    Document {
+        name: "office",
+        binary: "cipdeck-office",
+        index: "office.html",
+        styles: &["tokens", "base", "kit", "access", "office"],
+    },
+];
+
 /// What people write: the page, its boot script, its picture and its styles.
 #[derive(Debug, Hash)]
 pub(crate) struct Sources {
     index: String,
     boot: String,
     icon: String,
-    styles: String,
+    /// By name, without its ending.
+    styles: BTreeMap<String, String>,
 }
 
 impl Sources {
@@ -32,6 +64,15 @@ impl Sources {
             icon: text("icon.svg")?,
             styles: styles(&frontend.join("styles"))?,
         })
+    }
+
+    fn sheet(&self, document: Document) -> Result<String> {
+        let mut all = String::new();
+        for name in document.styles {
+            all +=
+                self.styles.get(*name).with_context(|| format!("there is no frontend/styles/{name}.css"))?;
+        }
+        Ok(squeeze::styles(&all))
     }
 }
 
@@ -49,15 +90,16 @@ pub(crate) struct Bound {
 /// The files of the page: path below `frontend/dist` to content.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// Gives each file its hashed name, and writes these names into the files that refer to it.
-pub(crate) fn assemble(sources: &Sources, bound: Bound) -> Result<Files> {
-    let mut files: Files = bound.snippets.into_iter().map(|(path, text)| (path, text.into_bytes())).collect();
-    let wasm = add(&mut files, "page.wasm", bound.wasm);
-    let script = add(&mut files, "page.js", bound.script.into_bytes());
-    let icon = add(&mut files, "icon.svg", sources.icon.clone().into_bytes());
-    let styles = add(&mut files, "styles.css", sources.styles.clone().into_bytes());
+/// Gives each file of a document its hashed name, and writes these names into the files that refer to it.
+pub(crate) fn assemble(files: &mut Files, document: Document, sources: &Sources, bound: Bound) -> Result<()> {
+    files.extend(bound.snippets.into_iter().map(|(path, text)| (path, text.into_bytes())));
+    let name = |ending: &str| format!("{}.{ending}", document.name);
+    let wasm = add(files, &name("wasm"), bound.wasm);
+    let script = add(files, &name("js"), squeeze::script(&bound.script).into_bytes());
+    let icon = add(files, "icon.svg", sources.icon.clone().into_bytes());
+    let styles = add(files, &name("css"), sources.sheet(document)?.into_bytes());
     let boot = refer(&sources.boot, "boot.js", &[("./page.wasm", &wasm), ("./page.js", &script)])?;
-    let boot = add(&mut files, "boot.js", boot.into_bytes());
+    let boot = add(files, "boot.js", squeeze::script(&boot).into_bytes());
     let index = refer(
         &sources.index,
         "index.html",
@@ -69,8 +111,8 @@ pub(crate) fn assemble(sources: &Sources, bound: Bound) -> Result<Files> {
             ("/boot.js", &boot),
         ],
     )?;
-    files.insert("index.html".to_owned(), index.into_bytes());
-    Ok(files)
+    files.insert(document.index.to_owned(), index.into_bytes());
+    Ok(())
 }
 
 /// Makes the folder hold exactly these files, without touching one that has its content already.
@@ -132,21 +174,19 @@ fn refer(text: &str, file: &str, names: &[(&str, &str)]) -> Result<String> {
     Ok(text)
 }
 
-/// All style sheets as one: tokens, then base, then the others by name.
-fn styles(folder: &Path) -> Result<String> {
-    let mut sheets: Vec<String> = match fs::read_dir(folder) {
-        Ok(entries) => {
-            entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
+/// All style sheets by name.
+fn styles(folder: &Path) -> Result<BTreeMap<String, String>> {
+    let mut sheets = BTreeMap::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "css") {
+            let text =
+                fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            sheets.insert(name, text);
         }
-        Err(_) => Vec::new(),
-    };
-    sheets.retain(|name| Path::new(name).extension().is_some_and(|extension| extension == "css"));
-    sheets.sort_by_key(|name| (name != "tokens.css", name != "base.css", name.clone()));
-    let mut all = String::new();
-    for sheet in sheets {
-        all += &fs::read_to_string(folder.join(&sheet)).with_context(|| format!("cannot read {sheet}"))?;
     }
-    Ok(all)
+    Ok(sheets)
 }
 
 #[cfg(test)]
@@ -158,43 +198,66 @@ mod tests {
             index: r#"<link href="/styles.css"><link href="/icon.svg"><link href="/page.wasm"><link href="/page.js"><script src="/boot.js">"#.into(),
             boot: boot.into(),
             icon: "<svg/>".into(),
-            styles: "a{}".into(),
+            styles: ["tokens", "base", "kit", "access", "pages", "office"].map(|name| (name.into(), format!(".{name} {{}}"))).into(),
         }
     }
 
-    fn bound(wasm: &[u8]) -> Bound {
-        Bound { wasm: wasm.to_vec(), script: "export default 1".into(), snippets: Vec::new() }
+    /// Both documents, with this as the module of the first.
+    fn assembled(boot: &str, wasm: &[u8]) -> Result<Files> {
+        let mut files = Files::new();
+        for (document, wasm) in DOCUMENTS.into_iter().zip([wasm, b"office"]) {
+            let bound = Bound {
+                wasm: wasm.to_vec(),
+                script: format!("export {{{}}}", document.name),
+                snippets: Vec::new(),
+            };
+            assemble(&mut files, document, &sources(boot), bound)?;
+        }
+        Ok(files)
     }
 
-    fn index(files: &Files) -> String {
-        String::from_utf8(files["index.html"].clone()).unwrap()
+    fn index<'a>(files: &'a Files, document: &Document) -> &'a str {
+        std::str::from_utf8(&files[document.index]).unwrap()
     }
 
     const BOOT: &str = r#"import init from "./page.js"; init("./page.wasm")"#;
 
     #[test]
-    fn every_file_that_the_page_names_exists_under_its_hashed_name() {
-        let files = assemble(&sources(BOOT), bound(b"\0asm")).unwrap();
-        let page = index(&files);
-        let named: Vec<_> = files.keys().filter(|name| *name != "index.html").collect();
-        assert_eq!(named.len(), 5);
+    fn every_file_that_a_document_names_exists_under_its_hashed_name() {
+        let files = assembled(BOOT, b"\0asm").unwrap();
+        let [page, office] = DOCUMENTS.map(|document| index(&files, &document));
+        let named: Vec<_> = files.keys().filter(|name| !name.ends_with("html")).collect();
+        assert_eq!(named.len(), 9, "one icon for both: {named:?}");
         for name in named {
-            assert!(page.contains(&format!("\"/{name}\"")), "{name} is not in {page}");
+            let quoted = format!("\"/{name}\"");
+            assert!(page.contains(&quoted) || office.contains(&quoted), "{name} is in no document");
         }
     }
 
     #[test]
+    fn a_document_has_its_own_styles_after_those_of_all() {
+        let files = assembled(BOOT, b"").unwrap();
+        let sheet = |wanted: &str| {
+            let found = files.iter().find(|(name, _)| name.starts_with(wanted) && name.ends_with("css"));
+            String::from_utf8(found.unwrap().1.clone()).unwrap()
+        };
+        assert!(sheet("page").ends_with(".access{}.pages{}"), "{}", sheet("page"));
+        assert!(sheet("office").ends_with(".access{}.office{}"), "{}", sheet("office"));
+    }
+
+    #[test]
     fn a_changed_module_changes_its_name_and_the_names_of_those_that_refer_to_it() {
-        let one = assemble(&sources(BOOT), bound(b"one")).unwrap();
-        let two = assemble(&sources(BOOT), bound(b"two")).unwrap();
-        let same = one.keys().filter(|name| two.contains_key(*name)).collect::<Vec<_>>();
-        assert!(same.iter().all(|name| !name.starts_with("boot") && !name.ends_with("wasm")), "{same:?}");
-        assert_ne!(index(&one), index(&two));
+        let [one, two] = [b"one", b"two"].map(|wasm| assembled(BOOT, wasm).unwrap());
+        let changed: Vec<_> = one.keys().filter(|name| !two.contains_key(*name)).collect();
+        assert!(changed.iter().all(|name| name.starts_with("boot") || name.ends_with("wasm")), "{changed:?}");
+        assert_eq!(changed.len(), 2);
+        let [page, office] = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
+        assert_eq!((page, office), (false, true));
     }
 
     #[test]
     fn a_boot_script_that_names_no_module_is_refused() {
-        let error = assemble(&sources("nothing"), bound(b"")).unwrap_err().to_string();
+        let error = assembled("nothing", b"").unwrap_err().to_string();
         assert_eq!(error, r#"frontend/boot.js does not refer to "./page.wasm""#);
     }
 
@@ -202,8 +265,8 @@ mod tests {
     fn writing_again_touches_nothing_and_removes_what_is_old() {
         let folder = tempfile::tempdir().unwrap();
         let dist = folder.path().join("dist");
-        write(&dist, &assemble(&sources(BOOT), bound(b"one")).unwrap()).unwrap();
-        let two = assemble(&sources(BOOT), bound(b"two")).unwrap();
+        write(&dist, &assembled(BOOT, b"one").unwrap()).unwrap();
+        let two = assembled(BOOT, b"two").unwrap();
         write(&dist, &two).unwrap();
         let present = || {
             let mut all: Vec<_> = fs::read_dir(&dist)

@@ -1,7 +1,7 @@
 //! What the relay says over the WebSocket, as this page reads it.
 
 use cipdeck_shared::{
-    api::{BlockStatus, Problem, TargetStatus},
+    api::{BlockStatus, Problem, TargetStatus, WindowView},
     config::{Block, BlockId},
 };
 use serde::Deserialize;
@@ -11,7 +11,7 @@ use serde::Deserialize;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Heard {
-    /// `hello`, `snapshot`, `changes`, `answer`, or a word of a newer relay.
+    /// `hello`, `access`, `snapshot`, `changes`, `answer`, or a word of a newer relay.
     #[serde(rename = "type")]
     pub(super) kind: String,
     pub(super) protocol: u32,
@@ -21,7 +21,11 @@ pub(super) struct Heard {
     pub(super) removed: Vec<BlockId>,
     pub(super) targets: Vec<TargetStatus>,
     pub(super) targets_removed: Vec<String>,
+    pub(super) window: Option<WindowView>,
+    pub(super) read_only: bool,
+    pub(super) stopped: Option<String>,
     pub(super) id: String,
+    pub(super) status: Option<BlockStatus>,
     pub(super) problem: Option<Problem>,
 }
 
@@ -29,7 +33,7 @@ pub(super) struct Heard {
 mod tests {
     use super::*;
     use cipdeck_shared::{
-        api::{Answer, ProblemCode, ServerMessage},
+        api::{Answer, ProblemCode, ServerMessage, WriteState},
         config::MsgCipGeneric,
     };
 
@@ -51,6 +55,15 @@ mod tests {
         let read = heard(&changes);
         assert_eq!((read.kind.as_str(), read.seq, read.removed), ("changes", 8, vec![BlockId(3)]));
         assert_eq!((read.blocks, read.targets_removed.len()), (vec![block], 1));
+        let window = WindowView {
+            owner: "anna".to_owned(),
+            opened_at: String::new(),
+            ends_at: String::new(),
+            left_ms: 900_000,
+        };
+        let access = WriteState { window: Some(window.clone()), read_only: true, stopped: None };
+        let read = heard(&ServerMessage::Access(access));
+        assert_eq!((read.kind.as_str(), read.window, read.read_only), ("access", Some(window), true));
         let problem = Problem { code: ProblemCode::Busy, ..crate::net::rest::unreachable(String::new()) };
         let answer = Box::new(Answer::Problem(problem.clone()));
         let read = heard(&ServerMessage::Answer { id: "c1".to_owned(), answer });

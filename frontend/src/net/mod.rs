@@ -5,11 +5,12 @@ mod reconnect;
 mod relay;
 pub mod rest;
 mod sequence;
+pub mod session;
 mod socket;
 
 pub use self::{
     reconnect::{Action, Input, Phase, Reconnect},
-    relay::{Link, Relay},
+    relay::{Link, Relay, Writing},
     sequence::Sequence,
     socket::Socket,
 };

@@ -25,6 +25,9 @@ pub enum Input {
     Closed,
     /// The wait is over.
     Due,
+    /// The relay does not want to talk to whoever is here: nobody is signed in, or they may not. Trying again would
+    /// change nothing.
+    Refused,
 }
 
 /// What to do.
@@ -71,6 +74,10 @@ impl Reconnect {
                 let wait = WAITS[usize::try_from(self.failures).unwrap_or(LAST).min(LAST)];
                 self.failures += 1;
                 Some(Action::Wait(wait))
+            }
+            (_, Input::Refused) => {
+                *self = Self { was_online: self.was_online, ..Self::default() };
+                None
             }
             _ => None,
         }
@@ -119,6 +126,16 @@ mod tests {
             let mut machine = waiting;
             assert_eq!((machine.step(input), machine), (None, waiting), "{input:?}");
         }
+    }
+
+    #[test]
+    fn who_is_refused_does_not_come_back_by_itself() {
+        let mut machine = after(&[Input::Try, Input::Hello]);
+        assert_eq!(machine.step(Input::Refused), None);
+        for late in [Input::Closed, Input::Due, Input::Hello] {
+            assert_eq!((machine.step(late), machine.phase()), (None, Phase::Idle), "{late:?}");
+        }
+        assert_eq!(machine.step(Input::Try), Some(Action::Open), "a person who has signed in elsewhere");
     }
 
     #[test]

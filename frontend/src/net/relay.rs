@@ -7,7 +7,7 @@ use std::{
 };
 
 use cipdeck_shared::{
-    api::{ClientMessage, PROTOCOL_VERSION, Problem},
+    api::{ClientMessage, PROTOCOL_VERSION, Problem, SessionState, WriteState},
     config::BlockId,
 };
 use gloo_timers::callback::{Interval, Timeout};
@@ -18,12 +18,13 @@ use super::{
     reconnect::{Action, Input, Phase, Reconnect},
     rest::{self, unreachable},
     sequence::Sequence,
+    session,
     socket::Socket,
 };
 use crate::{
     browser,
     i18n::tr,
-    store::{RowStore, Shelf, TargetStore, Watch, Watchers},
+    store::{DeckId, RowStore, Shelf, TargetStore, Watch, Watchers},
 };
 
 /// What the page says about the connection.
@@ -53,6 +54,30 @@ pub enum Link {
         /// The relay's.
         protocol: u32,
     },
+    /// There is no administrator yet.
+    SetUp,
+    /// Nobody is signed in, or not any more.
+    SignedOut,
+    /// Who is signed in may not watch.
+    Denied,
+}
+
+/// What the relay says about writing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Writing {
+    /// As it was heard.
+    pub state: WriteState,
+    /// When the window closes, in ms of [`browser::now_ms`].
+    pub ends_ms: f64,
+}
+
+impl Writing {
+    /// What was heard just now, of a window that closes in so many ms.
+    pub fn heard(state: WriteState, left_ms: u64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "an hour at most")]
+        let ends_ms = browser::now_ms() + left_ms as f64;
+        Self { state, ends_ms }
+    }
 }
 
 /// A handle to the connection. Clones are the same connection.
@@ -70,9 +95,11 @@ struct Inner {
     pending: RefCell<Shelf<String, Callback<Problem>>>,
     last_command: Cell<u64>,
     link: RefCell<Link>,
+    writing: RefCell<Rc<Writing>>,
     has_snapshot: Cell<bool>,
     lost_ms: Cell<f64>,
     watchers: Watchers,
+    session: RefCell<Option<Watch>>,
     spent: Callback<f64>,
 }
 
@@ -90,21 +117,39 @@ impl Relay {
             pending: RefCell::default(),
             last_command: Cell::default(),
             link: RefCell::new(Link::Connecting),
+            writing: RefCell::default(),
             has_snapshot: Cell::default(),
             lost_ms: Cell::default(),
             watchers: Watchers::default(),
+            session: RefCell::default(),
             spent,
         }))
     }
 
-    /// Connects, or tries again at once.
+    /// Connects, or tries again at once. From then on it also follows the session of this browser.
     pub fn connect(&self) {
+        let relay = self.clone();
+        self.0.session.replace(Some(session::watch(Callback::from(move |()| {
+            if let Some(view) = session::view() {
+                relay.follow(view.state);
+            }
+        }))));
         self.input(Input::Try);
     }
 
     /// What to show.
     pub fn link(&self) -> Link {
         self.0.link.borrow().clone()
+    }
+
+    /// What the relay says about writing; [`Self::watch`] tells when that changes, too.
+    pub fn writing(&self) -> Rc<Writing> {
+        self.0.writing.borrow().clone()
+    }
+
+    /// Whether the relay has to do with somebody else first, before anything of it can be shown.
+    pub fn is_closed_to_us(&self) -> bool {
+        matches!(*self.0.link.borrow(), Link::SetUp | Link::SignedOut | Link::Denied)
     }
 
     /// What the relay knows of its targets.
@@ -132,30 +177,13 @@ impl Relay {
     }
 
     /// Runs a block once.
-    pub fn run(&self, block: BlockId, confirm_write: Option<u64>, refused: Callback<Problem>) {
-        self.command(
-            |id| ClientMessage::Run { id, block, ticket: confirm_write.map(|revision| revision.to_string()) },
-            refused,
-        );
+    pub fn run(&self, block: BlockId, ticket: Option<String>, refused: Callback<Problem>) {
+        self.command(|id| ClientMessage::Run { id, block, ticket }, refused);
     }
 
     /// Sets IN.
-    pub fn set_in(
-        &self,
-        block: BlockId,
-        input: bool,
-        confirm_write: Option<u64>,
-        refused: Callback<Problem>,
-    ) {
-        self.command(
-            |id| ClientMessage::In {
-                id,
-                block,
-                input,
-                ticket: confirm_write.map(|revision| revision.to_string()),
-            },
-            refused,
-        );
+    pub fn set_in(&self, block: BlockId, input: bool, ticket: Option<String>, refused: Callback<Problem>) {
+        self.command(|id| ClientMessage::In { id, block, input, ticket }, refused);
     }
 
     /// Cancels what is running.
@@ -179,17 +207,35 @@ impl Relay {
     fn input(&self, input: Input) {
         let action = self.0.machine.borrow_mut().step(input);
         match action {
-            Some(Action::Open) => self.open(),
+            Some(Action::Open) => {
+                self.0.wait.take();
+                let relay = self.clone();
+                spawn_local(async move {
+                    match session::ask().await {
+                        Ok(view) if view.state != SessionState::SignedIn => relay.follow(view.state),
+                        // Without an answer the socket will not open either, and says so.
+                        _ => relay.open(),
+                    }
+                });
+            }
             Some(Action::Wait(ms)) => self.wait(ms),
             None => {}
         }
     }
 
+    /// What the session of this browser means for the connection.
+    fn follow(&self, state: SessionState) {
+        match state {
+            SessionState::SignedIn => {}
+            SessionState::SetUp => self.refused(Link::SetUp),
+            SessionState::SignedOut => self.refused(Link::SignedOut),
+        }
+    }
+
     fn open(&self) {
-        self.0.wait.take();
         let (talking, closing) = (self.clone(), self.clone());
         let on_text = Callback::from(move |text: String| talking.hear(&text));
-        let on_close = Callback::from(move |()| closing.closed());
+        let on_close = Callback::from(move |code| closing.closed(code));
         let socket =
             browser::websocket_url("/api/v1/ws").and_then(|url| Socket::open(&url, on_text, on_close));
         let failed = socket.is_none();
@@ -199,8 +245,31 @@ impl Relay {
         }
     }
 
-    fn closed(&self) {
-        // The socket is in the middle of calling us: it goes after it has returned.
+    fn closed(&self, code: u16) {
+        match code {
+            CLOSE_SIGNED_OUT => {
+                session::lost();
+                self.refused(Link::SignedOut);
+            }
+            CLOSE_DENIED => self.refused(Link::Denied),
+            _ => {
+                self.drop_socket();
+                self.input(Input::Closed);
+            }
+        }
+    }
+
+    /// Nothing of the relay is shown to whom it does not want to show it; drafts stay where they are.
+    fn refused(&self, link: Link) {
+        self.drop_socket();
+        self.input(Input::Refused);
+        self.0.rows.snapshot(Vec::new(), Vec::new());
+        self.0.targets.snapshot(Vec::new());
+        self.show(link);
+    }
+
+    fn drop_socket(&self) {
+        // The socket may be in the middle of calling us: it goes after it has returned.
         let old = self.0.socket.take();
         spawn_local(async move { drop(old) });
         self.0.probe.take();
@@ -208,11 +277,11 @@ impl Relay {
             self.0.lost_ms.set(browser::now_ms());
         }
         *self.0.sequence.borrow_mut() = Sequence::default();
+        self.0.writing.replace(Rc::default());
         let pending = std::mem::take(&mut *self.0.pending.borrow_mut());
         for refused in pending.values() {
             refused.emit(unreachable(tr!("problem.connection_lost").to_string()));
         }
-        self.input(Input::Closed);
     }
 
     fn wait(&self, ms: u32) {
@@ -242,6 +311,13 @@ impl Relay {
                 self.show(Link::Foreign { protocol: message.protocol });
             }
             "hello" => self.greeted(),
+            "access" => {
+                let left_ms = message.window.as_ref().map_or(0, |window| window.left_ms);
+                let (window, read_only, stopped) = (message.window, message.read_only, message.stopped);
+                let state = WriteState { window, read_only, stopped };
+                self.0.writing.replace(Rc::new(Writing::heard(state, left_ms)));
+                self.0.watchers.wake();
+            }
             "snapshot" => {
                 self.0.sequence.borrow_mut().snapshot(message.seq);
                 self.0.targets.snapshot(message.targets);
@@ -256,6 +332,11 @@ impl Relay {
             }
             "answer" => {
                 let refused = self.0.pending.borrow_mut().remove(&message.id);
+                if let Some((status, written)) =
+                    message.status.and_then(|mut status| status.written.take().map(|it| (status, it)))
+                {
+                    self.0.rows.put_written(DeckId::Stored(status.block), status.runs, written);
+                }
                 if let (Some(refused), Some(problem)) = (refused, message.problem) {
                     refused.emit(problem);
                 }
@@ -305,6 +386,10 @@ impl fmt::Debug for Relay {
         write!(f, "Relay({:?})", self.0.link.borrow())
     }
 }
+
+/// Close codes of the WebSocket: docs/WEBSOCKET.md.
+const CLOSE_SIGNED_OUT: u16 = 4401;
+const CLOSE_DENIED: u16 = 4403;
 
 /// ms between two measurements of the latency.
 const PROBE_MS: u32 = 5_000;

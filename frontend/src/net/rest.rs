@@ -1,23 +1,43 @@
 //! REST: what is asked once and answered once.
 
 use cipdeck_shared::{
-    api::{DiscoverRequest, Discovered, ExchangeView, Health, Problem, ProblemCode, TargetStatus},
+    api::{
+        DiscoverRequest, Discovered, ExchangeView, Health, NewWindow, Problem, ProblemCode, SessionView,
+        TargetStatus, WriteRequest, WriteTicket,
+    },
     config::{Block, BlockId, MsgCipGeneric},
 };
-use gloo_net::http::{Request, RequestBuilder, Response};
+use gloo_net::http::{Method, RequestBuilder};
 use serde::{Serialize, de::DeserializeOwned};
+
+use super::session;
 
 /// An answer, or why there is none.
 pub type Answered<T> = Result<T, Problem>;
 
 /// The relay's health: also the way to measure how far away it is.
 pub async fn health() -> Answered<Health> {
-    read(send(Request::get(&address("health"))).await?).await
+    parse(&ask(Method::GET, "health", None).await?)
+}
+
+/// Who the relay takes this browser for.
+pub async fn session() -> Answered<SessionView> {
+    parse(&ask(Method::GET, "session", None).await?)
+}
+
+/// Ends the session.
+pub async fn sign_out() -> Answered<()> {
+    ask(Method::DELETE, "session", None).await.map(|_| ())
+}
+
+/// Says that somebody is there.
+pub async fn is_active() -> Answered<()> {
+    ask(Method::POST, "session/active", None).await.map(|_| ())
 }
 
 /// Stores a new block.
 pub async fn create(config: &MsgCipGeneric) -> Answered<Block> {
-    read(send_json(Request::post(&address("blocks")), config).await?).await
+    parse(&ask(Method::POST, "blocks", Some(json(config)?)).await?)
 }
 
 /// Replaces a block; the block names the revision that it replaces.
@@ -26,19 +46,17 @@ pub async fn replace(block: &Block) -> Answered<Block> {
     // One way to write configurations instead of two. The relay takes the id from the address.
     config.extra.insert("revision".to_owned(), block.revision.into());
     config.extra.insert("id".to_owned(), String::from(block.id).into());
-    read(send_json(Request::put(&address(&format!("blocks/{}", block.id))), &config).await?).await
+    parse(&ask(Method::PUT, &format!("blocks/{}", block.id), Some(json(&config)?)).await?)
 }
 
 /// Deletes a block, if it still has this revision.
 pub async fn delete(id: BlockId, revision: u64) -> Answered<()> {
-    let address = address(&format!("blocks/{id}?revision={revision}"));
-    refuse(send(Request::delete(&address)).await?).await.map(|_| ())
+    ask(Method::DELETE, &format!("blocks/{id}?revision={revision}"), None).await.map(|_| ())
 }
 
 /// The newest exchange of a block.
 pub async fn newest_exchange(id: BlockId) -> Answered<Option<ExchangeView>> {
-    let all: Vec<ExchangeView> =
-        read(send(Request::get(&address(&format!("blocks/{id}/exchange")))).await?).await?;
+    let all: Vec<ExchangeView> = parse(&ask(Method::GET, &format!("blocks/{id}/exchange"), None).await?)?;
     // RFC 3339 in UTC sorts as text.
     Ok(all.into_iter().max_by(|one, other| one.at.cmp(&other.at)))
 }
@@ -48,14 +66,31 @@ pub fn capture(id: BlockId) -> String {
     address(&format!("blocks/{id}/exchange.pcapng"))
 }
 
+/// Opens the write window.
+pub async fn open_window(minutes: u32) -> Answered<()> {
+    let wanted = json(&NewWindow { minutes: Some(minutes) })?;
+    ask(Method::POST, "window", Some(wanted)).await.map(|_| ())
+}
+
+/// Closes the write window.
+pub async fn close_window() -> Answered<()> {
+    ask(Method::DELETE, "window", None).await.map(|_| ())
+}
+
+/// The first half of a write: what would happen, and the ticket for it.
+pub async fn ask_write(id: BlockId, revision: u64) -> Answered<WriteTicket> {
+    let seen = json(&WriteRequest { revision })?;
+    parse(&ask(Method::POST, &format!("blocks/{id}/write"), Some(seen)).await?)
+}
+
 /// Who is on the network.
 pub async fn discover(request: &DiscoverRequest) -> Answered<Discovered> {
-    read(send_json(Request::post(&address("discover")), request).await?).await
+    parse(&ask(Method::POST, "discover", Some(json(request)?)).await?)
 }
 
 /// All targets, with what counts up in them as it is now.
 pub async fn targets() -> Answered<Vec<TargetStatus>> {
-    read(send(Request::get(&address("targets"))).await?).await
+    parse(&ask(Method::GET, "targets", None).await?)
 }
 
 /// A problem that the relay did not report: it could not be reached, or did not speak our language.
@@ -70,32 +105,76 @@ pub fn unreachable(detail: String) -> Problem {
     }
 }
 
-fn address(resource: &str) -> String {
+/// Where something of the relay's is.
+pub fn address(resource: &str) -> String {
     format!("/api/v1/{resource}")
 }
 
-async fn send(request: RequestBuilder) -> Answered<Response> {
-    request.send().await.map_err(|error| unreachable(error.to_string()))
+/// The text of an answer. One function for all: what asks differs in a few words only.
+pub async fn ask(method: Method, resource: &str, body: Option<String>) -> Answered<String> {
+    let reply = request(method, resource, body).await?;
+    if (200..300).contains(&reply.status) { Ok(reply.text) } else { Err(reply.problem()) }
 }
 
-async fn send_json(request: RequestBuilder, body: &impl Serialize) -> Answered<Response> {
-    let text = serde_json::to_string(body).map_err(|error| unreachable(error.to_string()))?;
-    let request = request.header("Content-Type", "application/json").body(text);
-    let request = request.map_err(|error| unreachable(error.to_string()))?;
-    request.send().await.map_err(|error| unreachable(error.to_string()))
+/// What came back, whatever it says.
+#[derive(Clone, Debug)]
+pub struct Reply {
+    /// HTTP.
+    pub status: u16,
+    /// Seconds after which it makes sense to try again.
+    pub retry_after: Option<u32>,
+    /// The body.
+    pub text: String,
 }
 
-async fn refuse(response: Response) -> Answered<Response> {
-    if response.ok() {
-        return Ok(response);
+impl Reply {
+    /// Read as a refusal.
+    pub fn problem(&self) -> Problem {
+        let status = self.status;
+        serde_json::from_str(&self.text)
+            .unwrap_or_else(|_| Problem { status, ..unreachable(format!("HTTP {status}")) })
     }
-    let status = response.status();
-    let text = response.text().await.unwrap_or_default();
-    Err(serde_json::from_str(&text)
-        .unwrap_or_else(|_| Problem { status, ..unreachable(format!("HTTP {status}")) }))
 }
 
-async fn read<T: DeserializeOwned>(response: Response) -> Answered<T> {
-    let text = refuse(response).await?.text().await.map_err(|error| unreachable(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| unreachable(error.to_string()))
+/// Sends a request with the proof that it comes from this page. Whoever is not signed in is known to be so from then on.
+pub async fn request(method: Method, resource: &str, body: Option<String>) -> Answered<Reply> {
+    let mut request = RequestBuilder::new(&address(resource)).method(method);
+    if let Some(token) = session::csrf() {
+        request = request.header("X-CSRF-Token", &token);
+    }
+    if body.is_some() {
+        request = request.header("Content-Type", "application/json");
+    }
+    let request = match body {
+        Some(body) => request.body(body),
+        None => request.build(),
+    };
+    let response = request.map_err(no_answer)?.send().await.map_err(no_answer)?;
+    let status = response.status();
+    if status == SIGNED_OUT {
+        session::lost();
+    }
+    let retry_after = response.headers().get("Retry-After").and_then(|text| text.parse().ok());
+    let text = response.text().await.map_err(no_answer)?;
+    Ok(Reply { status, retry_after, text })
+}
+
+/// HTTP: nobody is signed in.
+const SIGNED_OUT: u16 = 401;
+
+/// A body.
+#[expect(clippy::result_large_err, reason = "once per request, and shown to somebody")]
+pub fn json(body: &impl Serialize) -> Answered<String> {
+    serde_json::to_string(body).map_err(|error| unreachable(error.to_string()))
+}
+
+/// What an answer says.
+#[expect(clippy::result_large_err, reason = "once per request, and shown to somebody")]
+pub fn parse<T: DeserializeOwned>(text: &str) -> Answered<T> {
+    serde_json::from_str(text).map_err(|error| unreachable(error.to_string()))
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
+fn no_answer(error: gloo_net::Error) -> Problem {
+    unreachable(error.to_string())
 }

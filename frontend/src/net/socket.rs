@@ -3,19 +3,20 @@
 use std::fmt;
 
 use wasm_bindgen::{JsCast, closure::Closure};
-use web_sys::{Event, MessageEvent, WebSocket};
+use web_sys::{CloseEvent, MessageEvent, WebSocket};
 use yew::Callback;
 
 /// An open or opening WebSocket. Dropping it closes it, and nothing more is heard of it.
 pub struct Socket {
     inner: WebSocket,
     _on_message: Closure<dyn Fn(MessageEvent)>,
-    _on_close: Closure<dyn Fn(Event)>,
+    _on_close: Closure<dyn Fn(CloseEvent)>,
 }
 
 impl Socket {
-    /// Opens a WebSocket. `None` if the browser refuses the address itself.
-    pub fn open(url: &str, on_text: Callback<String>, on_close: Callback<()>) -> Option<Self> {
+    /// Opens a WebSocket. `None` if the browser refuses the address itself. `on_close` hears the code of the close frame,
+    /// 1006 where there was none.
+    pub fn open(url: &str, on_text: Callback<String>, on_close: Callback<u16>) -> Option<Self> {
         let inner = WebSocket::new(url).ok()?;
         let on_message = Closure::<dyn Fn(MessageEvent)>::new(move |event: MessageEvent| {
             if let Some(text) = event.data().as_string() {
@@ -23,7 +24,8 @@ impl Socket {
             }
         });
         // An error is always followed by a close.
-        let on_close = Closure::<dyn Fn(Event)>::new(move |_: Event| on_close.emit(()));
+        let on_close =
+            Closure::<dyn Fn(CloseEvent)>::new(move |event: CloseEvent| on_close.emit(event.code()));
         inner.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
         inner.set_onclose(Some(on_close.as_ref().unchecked_ref()));
         Some(Self { inner, _on_message: on_message, _on_close: on_close })

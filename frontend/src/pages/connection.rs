@@ -18,13 +18,14 @@ pub fn Connection() -> Html {
     let link = use_link();
     let waits = matches!(link, Link::Lost { .. } | Link::None { .. });
     use_second(waits);
+    let can_try = waits || bench.relay().is_closed_to_us();
     let onclick = use_callback(bench, |_: MouseEvent, bench| bench.relay().connect());
     let (state, shape, words) = say(&link);
     html! {
         <div class={classes!("connection", state)} data-test="connection" data-state={state}>
             { shape.draw() }
             <span>{ words }</span>
-            if waits {
+            if can_try {
                 <button type="button" class="quiet-button" {onclick}>{ tr!("link.try_now") }</button>
             }
         </div>
@@ -61,6 +62,9 @@ fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
         }
         Link::Lost { next_ms, .. } => ("lost", Shape::Cross, tr!("link.lost", seconds = seconds(*next_ms))),
         Link::None { next_ms } => ("none", Shape::Ring, tr!("link.none", seconds = seconds(*next_ms))),
+        Link::SetUp => ("refused", Shape::Ring, tr!("link.set_up")),
+        Link::SignedOut => ("refused", Shape::Ring, tr!("link.signed_out")),
+        Link::Denied => ("refused", Shape::Cross, tr!("link.denied")),
         Link::Foreign { protocol } => ("foreign", Shape::Cross, tr!("link.foreign", protocol = protocol)),
     }
 }

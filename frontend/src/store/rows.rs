@@ -6,7 +6,7 @@
 use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
-    api::{BlockStatus, ExchangeView},
+    api::{BlockStatus, ExchangeView, Written},
     config::{Block, BlockId, MsgCipGeneric},
     engine::BlockView,
 };
@@ -37,6 +37,8 @@ pub struct Row {
     pub trace: Rc<Trace>,
     /// The newest exchange that was fetched.
     pub exchange: Option<Rc<ExchangeView>>,
+    /// What became of the write that this page has asked for, and after how many runs.
+    pub written: Option<(u64, Rc<Written>)>,
 }
 
 /// A handle to the rows. Clones are the same store.
@@ -144,6 +146,11 @@ impl RowStore {
         self.change(id, |row| row.exchange = Some(Rc::new(exchange)));
     }
 
+    /// What became of a write.
+    pub fn put_written(&self, id: DeckId, runs: u64, written: Written) {
+        self.change(id, |row| row.written = Some((runs, Rc::new(written))));
+    }
+
     /// Forgets an entry.
     pub fn remove(&self, id: DeckId) {
         let mut state = self.0.state.borrow_mut();
@@ -173,7 +180,15 @@ impl RowStore {
             let status = Rc::new(idle(id));
             state.rows.insert(
                 id,
-                Rc::new(Row { id, revision, config, status, trace: Rc::default(), exchange: None }),
+                Rc::new(Row {
+                    id,
+                    revision,
+                    config,
+                    status,
+                    trace: Rc::default(),
+                    exchange: None,
+                    written: None,
+                }),
             );
             state.members_changed();
         }

@@ -1,6 +1,7 @@
 //! Everything the page can do with blocks: where a block runs, what is stored, what a person is asked.
 
 mod storing;
+mod writing;
 
 use std::{cell::RefCell, fmt, rc::Rc};
 
@@ -21,6 +22,8 @@ use crate::{
     store::{DeckId, RowStore, Shelf},
 };
 
+pub use self::writing::{Consent, Intent};
+
 /// A handle to the whole application. Clones are the same.
 #[derive(Clone)]
 pub struct Workbench(Rc<Parts>);
@@ -33,6 +36,7 @@ struct Parts {
     notices: NoticeStore,
     gone: RefCell<Shelf<DeckId, Gone>>,
     storing: RefCell<Shelf<DeckId, ()>>,
+    wanted: RefCell<Option<(DeckId, Intent)>>,
 }
 
 /// What this page did to an entry that is not there any more.
@@ -72,6 +76,7 @@ impl Workbench {
             notices,
             gone: RefCell::default(),
             storing: RefCell::default(),
+            wanted: RefCell::default(),
         }))
     }
 
@@ -151,17 +156,16 @@ impl Workbench {
         id.stored().is_none() || row.zip(draft).is_some_and(|(row, draft)| draft.differs_from(&row.config))
     }
 
-    /// Runs an entry once. `seen` is the revision of a write that a person has seen and confirmed.
-    pub fn run(&self, id: DeckId, seen: Option<u64>) {
-        self.start(id, seen, Relay::run, Demo::run);
+    /// Runs an entry once.
+    pub fn run(&self, id: DeckId, consent: Consent) {
+        self.start(id, consent, Relay::run, Demo::run);
     }
 
-    /// Sets IN. `seen` as for [`Self::run`].
-    pub fn set_in(&self, id: DeckId, input: bool, seen: Option<u64>) {
+    /// Sets IN.
+    pub fn set_in(&self, id: DeckId, input: bool, consent: Consent) {
         if input {
-            let command =
-                |relay: &Relay, block, confirm, refused| relay.set_in(block, true, confirm, refused);
-            return self.start(id, seen, command, Demo::start);
+            let command = |relay: &Relay, block, ticket, refused| relay.set_in(block, true, ticket, refused);
+            return self.start(id, consent, command, Demo::start);
         }
         self.end(id, |relay, block, refused| relay.set_in(block, false, None, refused), Demo::stop);
     }
@@ -187,8 +191,8 @@ impl Workbench {
     fn start(
         &self,
         id: DeckId,
-        seen: Option<u64>,
-        command: impl FnOnce(&Relay, BlockId, Option<u64>, Callback<Problem>) + 'static,
+        consent: Consent,
+        command: impl FnOnce(&Relay, BlockId, Option<String>, Callback<Problem>) + 'static,
         demo: impl FnOnce(&Demo, DeckId, MessagePlan, bool) -> Result<(), CommandError>,
     ) {
         self.0.notices.clear(id);
@@ -197,14 +201,11 @@ impl Workbench {
             Place::Relay => {
                 let bench = self.clone();
                 spawn_local(async move {
-                    let unsaved = bench.is_unsaved(id);
-                    let Some((block, revision)) = bench.store(id).await else { return };
-                    // What was just stored is what the person saw; otherwise the revision of the dialog counts.
-                    let confirm = seen.map(|seen| if unsaved { revision } else { seen });
-                    command(&bench.0.relay, block, confirm, bench.refused(DeckId::Stored(block)));
+                    let Some((block, _)) = bench.store(id).await else { return };
+                    command(&bench.0.relay, block, consent.ticket(), bench.refused(DeckId::Stored(block)));
                 });
             }
-            Place::Browser => self.answer(id, demo(&self.0.demo, id, plan, seen.is_some())),
+            Place::Browser => self.answer(id, demo(&self.0.demo, id, plan, consent != Consent::None)),
             Place::Nowhere => {}
         }
     }

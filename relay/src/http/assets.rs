@@ -11,17 +11,28 @@ use crate::error::ApiError;
 #[allow_missing = true]
 struct Page;
 
-/// A file of the page; for every address without a file ending the page itself, which knows its own routes.
+/// A file of the page; for every address without a file ending one of the two documents, which know their own routes.
 pub(crate) async fn show(method: Method, uri: Uri) -> Response {
     let path = uri.path().trim_start_matches('/');
     if !matches!(method, Method::GET | Method::HEAD) {
         return ApiError::NotFound(format!("nothing takes {method} at /{path}")).into_response();
     }
-    let is_route = !path.rsplit('/').next().unwrap_or_default().contains('.');
-    match Page::get(if is_route { "index.html" } else { path }) {
-        Some(file) => serve(if is_route { "index.html" } else { path }, file.data.into_owned()),
-        None if is_route => not_built().into_response(),
+    let document = document(path);
+    let file = document.unwrap_or(path);
+    match Page::get(file) {
+        Some(content) => serve(file, content.data.into_owned()),
+        None if document.is_some() => not_built().into_response(),
         None => ApiError::NotFound(format!("nothing is at /{path}")).into_response(),
+    }
+}
+
+/// The document of an address, if it is not that of a file: the office, or the workbench.
+fn document(path: &str) -> Option<&'static str> {
+    let (first, last) = (path.split('/').next(), path.rsplit('/').next());
+    match (first, last) {
+        (_, Some(name)) if name.contains('.') => None,
+        (Some("office"), _) => Some("office.html"),
+        _ => Some("index.html"),
     }
 }
 
@@ -59,6 +70,19 @@ fn not_built() -> impl IntoResponse {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_address_is_that_of_a_document_or_of_a_file() {
+        for path in ["", "monitor", "deck/b7", "officer", "deck/office"] {
+            assert_eq!(document(path), Some("index.html"), "{path}");
+        }
+        for path in ["office", "office/", "office/sign-in", "office/history/b7"] {
+            assert_eq!(document(path), Some("office.html"), "{path}");
+        }
+        for path in ["icon.svg", "office/page.js", "snippets/gloo-0123/inline0.js"] {
+            assert_eq!(document(path), None, "{path}");
+        }
+    }
 
     #[test]
     fn only_names_that_change_with_their_content_are_kept_for_ever() {

@@ -1,7 +1,6 @@
 //! Typed values in the data of a message: from the attribute tables, or guessed and called so.
 
 use alloc::borrow::Cow;
-use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
@@ -130,7 +129,8 @@ fn guesses(from: usize, bytes: &[u8]) -> Vec<Decoded> {
         &[a, b, c, d] => {
             let mut readings = numbers(bytes, &[CipType::Dint, CipType::Udint]);
             // The shortest form: a number that is no REAL tends to be tiny or huge as one.
-            readings.push((CipType::Real.name(), format!("{:?}", f32::from_le_bytes([a, b, c, d]))));
+            let real = f32::from_le_bytes([a, b, c, d]);
+            readings.push((CipType::Real.name(), zmij::Buffer::new().format(real).to_string()));
             readings
         }
         _ => alloc::vec![("bytes", hex(bytes))],

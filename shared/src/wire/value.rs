@@ -107,7 +107,11 @@ impl fmt::Display for CipValue {
             Self::Udint(value) => write!(f, "{value}"),
             Self::Int(value) => write!(f, "{value}"),
             Self::Dint(value) => write!(f, "{value}"),
-            Self::Real(value) => write!(f, "{value}"),
+            Self::Real(value) => {
+                let mut buffer = zmij::Buffer::new();
+                let text = buffer.format(*value);
+                f.write_str(text.strip_suffix(".0").unwrap_or(text))
+            }
             Self::Word(value) => write!(f, "{value:#06x}"),
             Self::Dword(value) => write!(f, "{value:#010x}"),
             Self::ShortString(value) => write!(f, "{value}"),

@@ -4,13 +4,15 @@ use std::rc::Rc;
 
 use cipdeck_shared::api::BlockStatus;
 use wasm_bindgen::{JsCast, closure::Closure};
-use yew::prelude::*;
+use yew::{platform::spawn_local, prelude::*};
 
-use super::{
-    subject::Subject,
-    write_dialog::{Intent, WriteDialog},
+use super::{subject::Subject, write_dialog::WriteDialog};
+use crate::{
+    hooks::use_workbench,
+    i18n::tr,
+    kit::Switch,
+    workbench::{Consent, Intent, Place, Workbench},
 };
-use crate::{hooks::use_workbench, i18n::tr, kit::Switch};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct CommandsProps {
@@ -24,25 +26,26 @@ pub(super) fn Commands(props: &CommandsProps) -> Html {
     let bench = use_workbench();
     let CommandsProps { subject, status } = props;
     let id = subject.id;
-    let asked = use_state(|| None::<(Intent, Rc<Subject>)>);
+    let asked = use_state(|| bench.take_wanted(id));
     let obstacle = subject.obstacle();
     let busy = status.phase.is_busy();
     let can_run = obstacle.is_none() && !busy && !status.input;
     let begin = {
         let (bench, asked, subject) = (bench.clone(), asked.clone(), subject.clone());
         Callback::from(move |intent: Intent| match intent {
-            _ if subject.may_write() => asked.set(Some((intent, subject.clone()))),
-            Intent::Run => bench.run(id, None),
-            Intent::SwitchOn => bench.set_in(id, true, None),
+            _ if subject.may_write() => ask(&bench, &asked, &subject, intent),
+            Intent::Run => bench.run(id, Consent::None),
+            Intent::SwitchOn => bench.set_in(id, true, Consent::None),
         })
     };
     let on_run = begin.reform(|_: MouseEvent| Intent::Run);
-    let on_switch = {
-        let (bench, begin) = (bench.clone(), begin.clone());
-        Callback::from(
-            move |on: bool| if on { begin.emit(Intent::SwitchOn) } else { bench.set_in(id, false, None) },
-        )
-    };
+    let on_switch =
+        {
+            let (bench, begin) = (bench.clone(), begin.clone());
+            Callback::from(move |on: bool| {
+                if on { begin.emit(Intent::SwitchOn) } else { bench.set_in(id, false, Consent::None) }
+            })
+        };
     let on_cancel = use_callback((bench.clone(), id), |_: MouseEvent, (bench, id)| bench.cancel(*id));
     use_keys({
         let (bench, unsaved) = (bench.clone(), subject.unsaved && subject.online && subject.errors() == 0);
@@ -54,37 +57,53 @@ pub(super) fn Commands(props: &CommandsProps) -> Html {
         })
     });
     let on_answer = {
-        let asked = asked.clone();
-        Callback::from(move |confirmed: bool| {
-            if let (true, Some((intent, subject))) = (confirmed, &*asked) {
-                match intent {
-                    Intent::Run => bench.run(id, Some(subject.revision)),
-                    Intent::SwitchOn => bench.set_in(id, true, Some(subject.revision)),
+        let (bench, asked) = (bench.clone(), asked.clone());
+        Callback::from(move |consent: Consent| {
+            if consent != Consent::None {
+                match *asked {
+                    Some(Intent::Run) => bench.run(id, consent),
+                    Some(Intent::SwitchOn) => bench.set_in(id, true, consent),
+                    None => {}
                 }
             }
             asked.set(None);
         })
     };
+    let words = if subject.is_cyclic() { tr!("run.in_cyclic") } else { tr!("run.in_once") };
+    let can_stop = !busy || !subject.may_command();
     let switch = Switch {
         label: "IN",
         on: status.input,
-        disabled: obstacle.is_some() && !status.input,
-        title: if subject.is_cyclic() { tr!("run.in_cyclic") } else { tr!("run.in_once") },
+        disabled: if status.input { !subject.may_command() } else { obstacle.is_some() },
+        title: obstacle.clone().unwrap_or(words),
         on_switch,
     };
     html! {
         <div class="commands">
             { switch.draw() }
-            <button type="button" class="button primary run" disabled={!can_run} onclick={on_run} data-test="run">
+            <button type="button" class="button primary run" disabled={!can_run} title={obstacle.clone()} onclick={on_run} data-test="run">
                 { if subject.may_write() { tr!("run.write") } else { tr!("run.run") } }
             </button>
-            <button type="button" class="button" disabled={!busy} onclick={on_cancel} data-test="cancel">{ tr!("run.cancel") }</button>
+            <button type="button" class="button" disabled={can_stop} onclick={on_cancel} data-test="cancel">{ tr!("run.cancel") }</button>
             <span class="obstacle" data-test="obstacle">{ obstacle.unwrap_or_default() }</span>
-            if let Some((intent, subject)) = &*asked {
-                <WriteDialog intent={*intent} subject={subject.clone()} {on_answer} />
+            if let Some(intent) = *asked {
+                <WriteDialog {intent} subject={subject.clone()} {on_answer} />
             }
         </div>
     }
+}
+
+/// Opens the dialog of a write. The relay writes what is stored, so that comes first.
+fn ask(bench: &Workbench, asked: &UseStateHandle<Option<Intent>>, subject: &Subject, intent: Intent) {
+    if subject.place != Place::Relay || !subject.unsaved {
+        return asked.set(Some(intent));
+    }
+    let (bench, asked, id) = (bench.clone(), asked.clone(), subject.id);
+    spawn_local(async move {
+        if bench.store_to_write(id, intent).await {
+            asked.set(Some(intent));
+        }
+    });
 }
 
 #[derive(Clone, Copy, PartialEq)]

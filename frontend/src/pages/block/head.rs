@@ -29,13 +29,10 @@ pub(super) fn Head(props: &HeadProps) -> Html {
     });
     let on_save = use_callback((bench.clone(), id), |_: MouseEvent, (bench, id)| bench.save(*id));
     let on_revert = use_callback((bench, id), |_: MouseEvent, (bench, id)| bench.revert(*id));
-    let can_save = subject.unsaved && subject.online && subject.errors() == 0;
+    let no_save = subject.no_save();
+    let can_save = no_save.is_none() && subject.errors() == 0;
     let can_revert = subject.unsaved && id.stored().is_some();
-    let save_title = match (subject.unsaved, subject.online) {
-        (false, _) => tr!("save.nothing"),
-        (true, false) => tr!("save.needs_relay"),
-        (true, true) => tr!("save.title"),
-    };
+    let save_title = no_save.unwrap_or_else(|| tr!("save.title"));
     html! {
         <header class="head">
             <div class="head-name">

@@ -14,7 +14,9 @@ mod outcome;
 mod subject;
 mod trouble;
 mod way;
+mod window_form;
 mod write_dialog;
+mod written;
 
 use std::rc::Rc;
 
@@ -34,6 +36,7 @@ use crate::{
     hooks::{use_draft, use_link, use_row, use_workbench},
     i18n::tr,
     kit::{state_mark, status_bits},
+    net::session,
     pages::connection::StaleNote,
     store::DeckId,
 };
@@ -41,6 +44,7 @@ use crate::{
 pub(crate) use self::{
     axis::duration,
     codes::error_words,
+    notice::words,
     outcome::{age_words, decode, whole},
 };
 
@@ -62,7 +66,7 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
     let online = bench.relay().is_online();
     let config = row.as_ref().map(|row| (row.config.clone(), row.revision));
     let known = row.as_ref().and_then(|row| bench.relay().targets().profile(&row.config.target_cfg.path));
-    let subject = use_memo((id, config, draft, online, known), {
+    let subject = use_memo((id, config, draft, online, known, session::view()), {
         let bench = bench.clone();
         move |_| Subject::of(&bench, id)
     });

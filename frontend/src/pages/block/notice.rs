@@ -42,7 +42,8 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
     }
 }
 
-fn words(problem: &Problem) -> String {
+/// A problem for people.
+pub(crate) fn words(problem: &Problem) -> String {
     let code = problem.code.word();
     // The detail of a relay is for people, too; ours is the one that the page translates.
     match (try_text(&format!("problem.code_{code}")), &problem.code) {

@@ -11,7 +11,7 @@ use cipdeck_shared::{
 };
 use yew::prelude::*;
 
-use super::{axis::duration, trouble::trouble};
+use super::{axis::duration, trouble::trouble, written::written};
 use crate::{browser, hooks::use_second, i18n::tr, store::Row};
 
 #[derive(Clone, PartialEq, Properties)]
@@ -43,6 +43,9 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
             </h2>
             if status.phase == Phase::Failed {
                 { trouble(status, &row.config.target_cfg.path) }
+            }
+            if let Some((_, it)) = row.written.as_ref().filter(|(runs, _)| *runs == status.runs) {
+                { written(it) }
             }
             if let Some(last) = &status.last {
                 <div class={classes!("good", (!status.q).then_some("stale"))}>

@@ -1,6 +1,7 @@
 //! What a block's page is about: the draft, checked.
 
 use cipdeck_shared::{
+    api::Role,
     config::Profile,
     plan::{Field, MessagePlan, TriggerType},
 };
@@ -9,6 +10,7 @@ use yew::AttrValue;
 use crate::{
     editor::{Draft, Remark},
     i18n::tr,
+    net::session,
     store::DeckId,
     workbench::{Place, Workbench},
 };
@@ -75,13 +77,42 @@ impl Subject {
         self.plan.as_ref().is_some_and(|plan| plan.trigger() != TriggerType::Once)
     }
 
+    /// Whether it may be stopped: by everybody who may send.
+    pub(crate) fn may_command(&self) -> bool {
+        self.place != Place::Relay || session::may(Role::may_send)
+    }
+
+    /// Why it cannot be stored now.
+    pub(crate) fn no_save(&self) -> Option<AttrValue> {
+        match (self.unsaved, self.online) {
+            (false, _) => Some(tr!("save.nothing")),
+            (true, false) => Some(tr!("save.needs_relay")),
+            (true, true) if !session::may(Role::may_edit) => Some(tr!("may.not_edit")),
+            (true, true) => None,
+        }
+    }
+
     /// Why it cannot run now.
     pub(crate) fn obstacle(&self) -> Option<AttrValue> {
         match (&self.plan, self.place) {
             (None, _) if self.errors() == 1 => Some(tr!("run.finding")),
             (None, _) => Some(tr!("run.findings", count = self.errors())),
             (Some(_), Place::Nowhere) => Some(tr!("run.needs_relay")),
-            (Some(_), Place::Relay | Place::Browser) => None,
+            (Some(_), Place::Relay) => self.no_right(),
+            (Some(_), Place::Browser) => None,
+        }
+    }
+
+    /// What the caller's role does not allow. The relay decides; this only says it before somebody tries.
+    fn no_right(&self) -> Option<AttrValue> {
+        if !session::may(Role::may_send) {
+            Some(tr!("may.not_send"))
+        } else if self.unsaved && !session::may(Role::may_edit) {
+            Some(tr!("may.not_edit_first"))
+        } else if self.may_write() && !session::may(Role::may_write) {
+            Some(tr!("may.not_write"))
+        } else {
+            None
         }
     }
 }

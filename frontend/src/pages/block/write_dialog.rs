@@ -1,71 +1,144 @@
-//! Asks before something is written to a device: what, where, and the bytes themselves.
+//! Asks before something is written to a device: what, where, the bytes themselves, and through a relay what is there
+//! now and what will be.
 
 use std::rc::Rc;
 
 use cipdeck_shared::{
+    api::{Problem, ReadValue, WriteTicket},
+    config::{space_hex, write_hex},
     plan::{MessagePlan, TriggerType},
     table::{self, Access},
     wire::ServiceCode,
 };
-use yew::prelude::*;
+use yew::{platform::spawn_local, prelude::*};
 
-use super::subject::Subject;
-use crate::{editor::hexadecimal, i18n::tr, kit::Dialog};
-
-/// What is about to happen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Intent {
-    /// One message.
-    Run,
-    /// IN goes TRUE.
-    SwitchOn,
-}
+use super::{notice::words, subject::Subject, window_form::window_form};
+use crate::{
+    browser,
+    editor::hexadecimal,
+    hooks::{use_link, use_second, use_workbench},
+    i18n::tr,
+    kit::Dialog,
+    pages::block::whole,
+    workbench::{Consent, Intent, Place},
+};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct WriteDialogProps {
     pub(super) intent: Intent,
     pub(super) subject: Rc<Subject>,
-    /// Whether a person has confirmed.
-    pub(super) on_answer: Callback<bool>,
+    /// What the person has agreed to.
+    pub(super) on_answer: Callback<Consent>,
 }
 
-/// Confirmed once; a write that repeats itself, twice.
+/// What the relay said to the wish.
+#[derive(Clone, PartialEq)]
+enum Said {
+    Nothing,
+    /// The ticket, and until when it is good, in ms of [`browser::now_ms`].
+    Ticket(Rc<WriteTicket>, f64),
+    No(Rc<Problem>),
+}
+
+/// Confirmed once; a write that repeats itself, twice. Through a relay it needs an open window and a ticket.
 #[component]
 pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
-    let repeats = props.intent == Intent::SwitchOn && props.subject.is_cyclic();
+    let WriteDialogProps { intent, subject, on_answer } = props;
+    let bench = use_workbench();
+    use_link();
+    use_second(true);
+    let repeats = *intent == Intent::SwitchOn && subject.is_cyclic();
     let confirmed_once = use_state(|| false);
+    let said = use_state(|| Said::Nothing);
+    let asked = use_state(|| 0_u32);
+    let (node, no_window) = (use_node_ref(), use_state(|| None::<String>));
+    let by_relay = subject.place == Place::Relay;
+    let has_window = bench.relay().writing().state.window.is_some();
+    use_effect_with((by_relay && has_window, *asked, subject.id), {
+        let (said, bench) = (said.clone(), bench.clone());
+        move |(wanted, _, id)| {
+            said.set(Said::Nothing);
+            if let (true, Some(row)) = (*wanted, bench.rows().row(*id)) {
+                spawn_local(async move {
+                    said.set(match bench.ask_write(row.id, row.revision).await {
+                        #[expect(clippy::cast_precision_loss, reason = "a minute or so")]
+                        Ok(it) => {
+                            let ends_ms = browser::now_ms() + it.good_for_ms as f64;
+                            Said::Ticket(Rc::new(it), ends_ms)
+                        }
+                        Err(problem) => Said::No(Rc::new(problem)),
+                    });
+                });
+            }
+        }
+    });
+    let consent = match &*said {
+        _ if !by_relay => Some(Consent::Seen),
+        Said::Ticket(it, ends_ms) if *ends_ms > browser::now_ms() => Some(Consent::Ticket(it.ticket.clone())),
+        _ => None,
+    };
+    let can_confirm = consent.is_some();
     let onsubmit = {
-        let (on_answer, confirmed_once) = (props.on_answer.clone(), confirmed_once.clone());
+        let (on_answer, confirmed_once) = (on_answer.clone(), confirmed_once.clone());
         Callback::from(move |event: SubmitEvent| {
             event.prevent_default();
-            if repeats && !*confirmed_once {
-                confirmed_once.set(true);
-            } else {
-                on_answer.emit(true);
+            match &consent {
+                Some(_) if repeats && !*confirmed_once => confirmed_once.set(true),
+                Some(consent) => on_answer.emit(consent.clone()),
+                None => {}
             }
         })
     };
-    let Some(plan) = &props.subject.plan else { return html! {} };
+    let no = on_answer.reform(|_: MouseEvent| Consent::None);
+    let on_close = on_answer.reform(|()| Consent::None);
+    if by_relay && !has_window {
+        return html! {
+            <Dialog title={tr!("window.title")} test="window-dialog" {on_close}>{ window_form(&bench, &node, &no_window, no) }</Dialog>
+        };
+    }
+    let Some(plan) = &subject.plan else { return html! {} };
     let (title, confirm) = match (*confirmed_once, repeats) {
         (true, _) => (tr!("write.cyclic_title"), tr!("write.cyclic_do")),
         (false, true) => (tr!("write.title"), tr!("write.next")),
         (false, false) => (tr!("write.title"), tr!("write.do")),
     };
+    let again = move |_: MouseEvent| asked.set(*asked + 1);
     html! {
-        <Dialog {title} test="write-dialog" on_close={props.on_answer.reform(|()| false)}>
+        <Dialog {title} test="write-dialog" {on_close}>
             <form {onsubmit}>
                 if *confirmed_once {
                     <p class="warning-text">{ every(plan) }</p>
                 } else {
-                    { what(&props.subject, plan) }
+                    { what(subject, plan, &said) }
+                }
+                if by_relay {
+                    { answer(&said, again) }
                 }
                 <div class="dialog-buttons">
-                    <button type="button" class="button" autofocus=true data-test="write-cancel"
-                        onclick={props.on_answer.reform(|_: MouseEvent| false)}>{ tr!("dialog.cancel") }</button>
-                    <button type="submit" class="button danger" data-test="write-confirm">{ confirm }</button>
+                    <button type="button" class="button" autofocus=true data-test="write-cancel" onclick={no}>{ tr!("dialog.cancel") }</button>
+                    <button type="submit" class="button danger" disabled={!can_confirm} data-test="write-confirm">{ confirm }</button>
                 </div>
             </form>
         </Dialog>
+    }
+}
+
+/// What the relay said, and how long that holds.
+fn answer(said: &Said, again: impl Fn(MouseEvent) + 'static) -> Html {
+    let words: AttrValue = match said {
+        Said::Nothing => return html! { <p role="status" class="hint">{ tr!("write.asking") }</p> },
+        Said::Ticket(_, ends_ms) if *ends_ms > browser::now_ms() => {
+            let seconds = whole((ends_ms - browser::now_ms()) / 1_000.0);
+            return html! { <p class="hint" data-test="write-left">{ tr!("write.left", seconds = seconds) }</p> };
+        }
+        Said::Ticket(..) => tr!("write.late"),
+        Said::No(problem) => words(problem).into(),
+    };
+    html! {
+        <p class="finding error" role="alert" data-test="write-refused">
+            { words }{ " " }
+            <button type="button" class="tool" onclick={again}>{ tr!("write.again") }</button>
+        </p>
     }
 }
 
@@ -76,7 +149,7 @@ fn every(plan: &MessagePlan) -> AttrValue {
     }
 }
 
-fn what(subject: &Subject, plan: &MessagePlan) -> Html {
+fn what(subject: &Subject, plan: &MessagePlan, said: &Said) -> Html {
     let app = &subject.draft.config.app_cfg;
     let class = u16::try_from(app.class).unwrap_or_default();
     let service = ServiceCode(u8::try_from(app.service).unwrap_or_default());
@@ -86,7 +159,9 @@ fn what(subject: &Subject, plan: &MessagePlan) -> Html {
         Access::Write => tr!("write.access_write"),
         Access::Unknown | Access::Read => tr!("write.access_unknown"),
     };
-    let bytes: Vec<_> = plan.bytes().iter().map(|byte| format!("{byte:02X}")).collect();
+    let ticket = if let Said::Ticket(it, _) = said { Some(it) } else { None };
+    // Through a relay: the very bytes that it will send.
+    let bytes = ticket.map_or_else(|| write_hex(plan.bytes()), |it| it.request.clone());
     let number = |value: i64| format!("{value} = {}", hexadecimal(value));
     html! { <>
         <p>{ access }</p>
@@ -97,7 +172,34 @@ fn what(subject: &Subject, plan: &MessagePlan) -> Html {
             <dd>
                 { tr!("write.object", class = number(app.class), name = class_name, instance = number(app.instance), attribute = number(app.attribute)) }
             </dd>
-            <dt>{ tr!("write.bytes") }</dt><dd class="mono" data-test="write-bytes">{ bytes.join(" ") }</dd>
+            <dt>{ tr!("write.bytes") }</dt><dd class="mono" data-test="write-bytes">{ spaced(&bytes) }</dd>
+            if let Some(it) = ticket {
+                { change(it) }
+            }
         </dl>
     </> }
+}
+
+/// What is there now, and what will be.
+fn change(it: &WriteTicket) -> Html {
+    let old = it.old.as_ref().map_or_else(
+        || html! { <span class="quiet">{ tr!("write.no_old", why = it.no_old.as_deref().unwrap_or_default()) }</span> },
+        value,
+    );
+    html! { <>
+        <dt>{ tr!("write.old") }</dt><dd data-test="write-old">{ old }</dd>
+        if let Some(new) = &it.new {
+            <dt>{ tr!("write.new") }</dt><dd data-test="write-new"><b>{ value(new) }</b></dd>
+        }
+    </> }
+}
+
+/// A value in words, and its bytes.
+pub(super) fn value(value: &ReadValue) -> Html {
+    html! { <>{ &value.text }{ " " }<span class="quiet mono">{ spaced(&value.data) }</span></> }
+}
+
+/// `10 03 20 04`
+fn spaced(hex: &str) -> String {
+    space_hex(hex).to_ascii_uppercase()
 }

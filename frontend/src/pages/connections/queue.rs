@@ -118,7 +118,7 @@ mod tests {
         let status = Rc::new(BlockStatus::new(BlockId(id), &view, None, None));
         let config = Rc::new(MsgCipGeneric::product_name(path));
         let id = DeckId::Stored(BlockId(id));
-        Rc::new(Row { id, revision: 1, config, status, trace: Rc::default(), exchange: None })
+        Rc::new(Row { id, revision: 1, config, status, trace: Rc::default(), exchange: None, written: None })
     }
 
     fn ids(line: &[Busy]) -> Vec<String> {

@@ -8,7 +8,7 @@ use crate::{
     i18n::{rule_text, tr},
     pages::connections::discover::Discover,
     route::{self, Route},
-    workbench::{Place, Workbench},
+    workbench::{Consent, Place, Workbench},
 };
 
 /// The path of the demo device.
@@ -30,7 +30,7 @@ pub fn FirstStart() -> Html {
         let bench = bench.clone();
         Callback::from(move |path: String| {
             let id = bench.add(MsgCipGeneric::product_name(&path));
-            bench.run(id, None);
+            bench.run(id, Consent::None);
             route::go(Route::Block(id));
         })
     };

@@ -2,16 +2,17 @@
 
 use std::rc::Rc;
 
-use cipdeck_shared::config::MsgCipGeneric;
+use cipdeck_shared::{api::Role, config::MsgCipGeneric};
 use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
 use super::dialogs::{Asked, Question};
 use crate::{
     browser,
-    hooks::{use_draft, use_row, use_workbench},
+    hooks::{use_draft, use_row, use_session, use_workbench},
     i18n::tr,
     kit::state_mark,
+    net::session,
     route::{self, Route, link},
     store::DeckId,
 };
@@ -57,20 +58,24 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
     let oninput = use_callback(filter.clone(), |event: InputEvent, filter| {
         filter.set(event.target_unchecked_into::<HtmlInputElement>().value());
     });
-    let none = props.chosen.is_none();
+    use_session();
+    let obstacle = (!session::may(Role::may_edit)).then(|| tr!("may.not_edit"));
+    let (locked, none) = (obstacle.is_some(), obstacle.is_some() || props.chosen.is_none());
+    let no_copy = props.chosen.is_none();
     let action = |test: &'static str, words: AttrValue, onclick: Callback<MouseEvent>, disabled: bool| {
+        let title = obstacle.clone().filter(|_| disabled);
         html! {
-            <button type="button" class="tool" data-test={test} {onclick} {disabled}>{ words }</button>
+            <button type="button" class="tool" data-test={test} {onclick} {disabled} {title}>{ words }</button>
         }
     };
     html! {
         <aside class="list" aria-label={tr!("list.label")}>
-            <button type="button" class="button wide" data-test="new-block" onclick={on_new}>{ tr!("list.new") }</button>
+            <button type="button" class="button wide" data-test="new-block" disabled={locked} title={obstacle.clone()} onclick={on_new}>{ tr!("list.new") }</button>
             <div class="tools">
                 { action("duplicate", tr!("list.duplicate"), on_duplicate, none) }
                 { action("rename", tr!("list.rename"), ask(Asked::Rename), none) }
-                { action("copy", tr!("list.copy"), ask(Asked::Copy), none) }
-                { action("paste", tr!("list.paste"), on_paste, false) }
+                { action("copy", tr!("list.copy"), ask(Asked::Copy), no_copy) }
+                { action("paste", tr!("list.paste"), on_paste, locked) }
                 { action("delete", tr!("list.delete"), ask(Asked::Delete), none) }
             </div>
             <input

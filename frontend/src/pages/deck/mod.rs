@@ -4,12 +4,14 @@ mod dialogs;
 mod first_start;
 mod list;
 
+use cipdeck_shared::api::Role;
 use yew::prelude::*;
 
 use self::{first_start::FirstStart, list::BlockList};
 use crate::{
     hooks::{use_ids, use_link, use_row, use_title, use_workbench},
     i18n::tr,
+    net::session,
     pages::block::BlockPane,
     route::{self, Redirect, Route},
     store::DeckId,
@@ -37,6 +39,9 @@ pub fn DeckPage(props: &DeckPageProps) -> Html {
         return html! { <p class="waiting" role="status">{ tr!("deck.connecting") }</p> };
     }
     match props.id {
+        None if ids.is_empty() && !session::may(Role::may_edit) => {
+            html! { <div class="empty"><h1>{ tr!("nav.deck") }</h1><p>{ tr!("deck.none_for_you") }</p></div> }
+        }
         None if ids.is_empty() => html! { <FirstStart /> },
         None => html! {
             <div class="deck">

@@ -1,0 +1,11 @@
+//! Who is here and what they may: seen in both documents.
+
+mod banner;
+mod refused;
+mod who;
+
+pub use self::{
+    banner::write_banner,
+    refused::{refused, sign_in_link},
+    who::{role_word, who},
+};

@@ -1,0 +1,60 @@
+//! Offers to open the write window, to those who may.
+
+use cipdeck_shared::api::Role;
+use web_sys::HtmlInputElement;
+use yew::{platform::spawn_local, prelude::*};
+
+use super::notice::words;
+use crate::{i18n::tr, net::session, workbench::Workbench};
+
+/// Minutes and a button, or why not. What becomes of it comes from the relay, as everybody hears it; a refusal goes to
+/// `refused`.
+pub(super) fn window_form(
+    bench: &Workbench,
+    node: &NodeRef,
+    refused: &UseStateHandle<Option<String>>,
+    on_cancel: Callback<MouseEvent>,
+) -> Html {
+    let writing = bench.relay().writing();
+    let obstacle = match &writing.state {
+        state if state.read_only => Some(tr!("writing.read_only")),
+        state if state.stopped.is_some() => {
+            Some(tr!("writing.stopped", why = state.stopped.as_deref().unwrap_or_default()))
+        }
+        _ if !session::is_person() || !session::may(Role::may_write) => Some(tr!("window.not_you")),
+        _ => None,
+    };
+    let onsubmit = {
+        let (bench, node, refused) = (bench.clone(), node.clone(), refused.clone());
+        move |event: SubmitEvent| {
+            event.prevent_default();
+            let minutes = node.cast::<HtmlInputElement>().and_then(|input| input.value().parse().ok());
+            let (bench, refused) = (bench.clone(), refused.clone());
+            spawn_local(async move {
+                let opened = bench.open_window(minutes.unwrap_or(MINUTES)).await;
+                refused.set(opened.err().map(|problem| words(&problem)));
+            });
+        }
+    };
+    html! {
+        <form {onsubmit}>
+            <p>{ tr!("window.text") }</p>
+            if let Some(obstacle) = &obstacle {
+                <p class="warning-text" data-test="window-obstacle">{ obstacle }</p>
+            } else {
+                <label for="window-minutes">{ tr!("window.minutes") }</label>
+                <input id="window-minutes" class="input number" type="number" min="1" max="60" required=true value={MINUTES.to_string()} ref={node.clone()} />
+            }
+            if let Some(refused) = &**refused {
+                <p class="finding error" role="alert">{ refused }</p>
+            }
+            <div class="dialog-buttons">
+                <button type="button" class="button" onclick={on_cancel} data-test="window-cancel">{ tr!("dialog.cancel") }</button>
+                <button type="submit" class="button danger" disabled={obstacle.is_some()} data-test="window-open">{ tr!("window.do") }</button>
+            </div>
+        </form>
+    }
+}
+
+/// Unless somebody chooses otherwise.
+const MINUTES: u32 = 15;
