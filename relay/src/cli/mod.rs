@@ -6,11 +6,13 @@ mod discover;
 mod exit;
 mod explain;
 mod once;
+mod remote;
 mod report;
 mod run;
 mod send;
 mod serve;
 mod simulate;
+mod user;
 
 use std::process::ExitCode;
 
@@ -26,6 +28,8 @@ use crate::telemetry;
 struct Cli {
     #[command(flatten)]
     logging: Logging,
+    #[command(flatten)]
+    remote: remote::Remote,
     #[command(subcommand)]
     command: Command,
 }
@@ -53,12 +57,14 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Send one message to a device from here; needs no relay.
     Send(send::Send),
-    /// Run a block from a file from here; needs no relay.
+    /// Run a block from a file: from here, or by the relay that --relay names.
     Run(run::Run),
     /// Find devices on the network: who answers to ListIdentity.
     Discover(discover::Discover),
     /// Who did what: verify the relay's records, or go on after a break.
     Audit(audit::Audit),
+    /// The users of a relay that is stopped: for the first administrator, and for a lost one.
+    User(user::User),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
 }
@@ -75,6 +81,9 @@ pub fn main() -> ExitCode {
 
 impl Cli {
     async fn execute(self) -> Exit {
+        if self.remote.is_given() && !matches!(self.command, Command::Run(_)) {
+            return Exit::usage(&"--relay, --token-file and --fingerprint go with run");
+        }
         if let Command::Serve(serve) = self.command {
             return serve.execute(self.logging).await;
         }
@@ -86,9 +95,10 @@ impl Cli {
             Command::Serve(serve) => serve.execute(self.logging).await,
             Command::Simulate(simulate) => simulate.execute().await,
             Command::Send(send) => send.execute().await,
-            Command::Run(run) => run.execute().await,
+            Command::Run(run) => run.execute(&self.remote).await,
             Command::Discover(discover) => discover.execute().await,
             Command::Audit(audit) => audit.execute().await,
+            Command::User(user) => user.execute().await,
             Command::Check(check) => check.execute(),
         }
     }

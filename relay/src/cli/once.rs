@@ -29,6 +29,23 @@ pub(super) struct Mode {
     pcap: Option<PathBuf>,
 }
 
+impl Mode {
+    /// Whether a recording of the sockets is wanted.
+    pub(super) const fn records(&self) -> bool {
+        self.pcap.is_some()
+    }
+
+    /// Whether machines read what is printed.
+    pub(super) const fn json(&self) -> bool {
+        self.json
+    }
+
+    /// The numbers of the runs.
+    pub(super) fn numbers(&self) -> std::ops::RangeInclusive<u64> {
+        1..=self.repeat.unwrap_or(1)
+    }
+}
+
 /// Runs what can be run and prints it.
 pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
     let (plan, findings) = MessagePlan::parse(config);
@@ -62,7 +79,7 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
 
 async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> Exit {
     let mut exit = Exit::SUCCESS;
-    for number in 1..=mode.repeat.unwrap_or(1) {
+    for number in mode.numbers() {
         // Whoever types the command has seen what it sends.
         let answer = match message.run().await {
             Ok(answer) => answer,
@@ -78,13 +95,18 @@ async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> E
 
 fn print(answer: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
     let status = answer.status();
-    let report = Report::new(&status, &answer.exchange);
+    let exchange = &answer.exchange;
+    show(&Report::new(&status, &exchange.request, exchange.response()), config, mode, number);
+}
+
+/// Prints how a run has ended.
+pub(super) fn show(report: &Report<'_>, config: &MsgCipGeneric, mode: &Mode, number: u64) {
     match (mode.json, mode.repeat) {
         (true, _) => say(&report.json()),
         (false, Some(_)) => say(&format!("{number:>4}  {}", report.line())),
         (false, None) => say(&report.text(config)),
     }
-    if mode.json && status.status.error {
+    if mode.json && report.is_error() {
         eprintln!("{}", report.line());
     }
 }

@@ -3,7 +3,6 @@
 use cipdeck_shared::api::{self, BlockStatus, Checked};
 use cipdeck_shared::config::{MsgCipGeneric, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
-use cipdeck_shared::engine::Exchange;
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
 use cipdeck_shared::wire::ServiceCode;
@@ -41,13 +40,18 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(status: &'a BlockStatus, exchange: &Exchange) -> Self {
-        let (request, response) = (&exchange.request, exchange.response());
+    /// With the message router bytes of the request and of the reply, if one came.
+    pub(super) fn new(status: &'a BlockStatus, request: &[u8], response: Option<&[u8]>) -> Self {
         Self {
             status,
             response: response.map(write_hex),
             decoded: response.map(|response| dissect::decode(request, response)).unwrap_or_default(),
         }
+    }
+
+    /// Whether the message failed.
+    pub(super) const fn is_error(&self) -> bool {
+        self.status.status.error
     }
 
     /// For machines.

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::Exit;
 use super::once::{Mode, execute};
+use super::remote::Remote;
 use crate::draft::Draft;
 
 /// A block from a file.
@@ -21,8 +22,9 @@ pub(super) struct Run {
 
 impl Run {
     /// Runs and prints.
-    pub(super) async fn execute(self) -> Exit {
+    pub(super) async fn execute(self, remote: &Remote) -> Exit {
         match read(&self.file) {
+            Ok(config) if remote.is_given() => remote.run(&config, &self.mode).await,
             Ok(config) => execute(&config, &self.mode).await,
             Err(exit) => exit,
         }
