@@ -3,9 +3,10 @@
 use cipdeck_shared::config::{MsgCipGeneric, read_hex, write_hex};
 use serde::Deserialize;
 use serde_json::Value;
+use utoipa::ToSchema;
 
 /// A configuration with or without the id and the revision that it once had.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, ToSchema)]
 pub(crate) struct Draft {
     /// What it claims to be.
     #[serde(default)]

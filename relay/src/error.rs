@@ -217,7 +217,9 @@ mod tests {
             ApiError::Unavailable(String::new()),
             ApiError::Internal(String::new()),
         ] {
-            let problem = serde_json::to_value(Problem::from(error)).unwrap();
+            let problem = Problem::from(error);
+            assert_eq!(problem.code.status(), problem.status, "{:?}", problem.code);
+            let problem = serde_json::to_value(problem).unwrap();
             let row = format!("| `{}` | {} |", problem["code"].as_str().unwrap(), problem["status"]);
             assert!(text.contains(&row), "docs/REST.md lacks {row}");
         }

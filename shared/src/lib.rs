@@ -12,7 +12,10 @@
 //! | [`plan`] | a configuration → a message that can be sent, or all findings |
 //! | [`engine`] | sans-IO machines: block, trigger, buffers, session, client; time is passed in |
 //! | [`api`] | the REST and WebSocket types |
-#![no_std]
+//!
+//! The feature `openapi` derives descriptions of the types of the interface. Only what is derived uses `std`, and the
+//! page is built without it.
+#![cfg_attr(not(feature = "openapi"), no_std)]
 #![forbid(unsafe_code)]
 extern crate alloc;
 

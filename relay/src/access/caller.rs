@@ -15,10 +15,10 @@ pub(crate) const CSRF_HEADER: &str = "x-csrf-token";
 
 /// The cookie of a person's session. Browsers take a `__Host-` cookie over TLS, and from loopback, and never from or
 /// for another host.
-const SESSION: &str = "__Host-cipdeck";
+pub(crate) const SESSION: &str = "__Host-cipdeck";
 
 /// The cookie of a view link. One of its own, so that opening a link signs nobody out.
-const VIEW: &str = "__Host-cipdeck-view";
+pub(crate) const VIEW: &str = "__Host-cipdeck-view";
 
 /// Somebody who is known.
 #[derive(Clone, Debug)]

@@ -35,7 +35,10 @@ use crate::audit::Audit;
 use crate::error::ApiError;
 use crate::store::{Store, StoreError};
 
-pub(crate) use self::caller::{CSRF_HEADER, Known, no_cookies, session_cookie, view_cookie};
+pub(crate) use self::caller::{
+    CSRF_HEADER, Known, SESSION as SESSION_COOKIE, VIEW as VIEW_COOKIE, no_cookies, session_cookie,
+    view_cookie,
+};
 pub(crate) use self::passes::{MadeLink, MadeToken, PassKind};
 pub(crate) use self::sessions::SignedIn;
 

@@ -5,6 +5,7 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 
 use cipdeck_shared::api::{AuditPage, AuditRecord};
 use serde::Deserialize;
+use utoipa::IntoParams;
 
 use super::Audit;
 
@@ -19,8 +20,9 @@ const MAX_LOOKED_AT: u64 = 16 * 1024 * 1024;
 const STEP: u64 = 64 * 1024;
 
 /// Which records a page shows.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
 pub(crate) struct Filter {
     /// One event, by its word.
     pub(crate) event: Option<String>,

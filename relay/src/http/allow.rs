@@ -1,23 +1,36 @@
 //! `/api/v1/allow`: what may be reached, and what operators may write.
 
 use axum::Json as Answer;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use cipdeck_shared::api::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllowedWrite};
 
 use super::caller::Caller;
-use super::extract::Json;
+use super::extract::{Json, Number};
 use crate::app::App;
 use crate::audit::Event;
 use crate::error::ApiError;
 use crate::permit::{RuleError, record};
 
-/// `GET allow/targets`
+/// The targets that may be reached.
+#[utoipa::path(
+    get,
+    path = "/allow/targets",
+    tag = "lists",
+    responses((status = 200, description = "The list", body = Vec<AllowedTarget>))
+)]
 pub(super) async fn targets(State(app): State<App>) -> Answer<Vec<AllowedTarget>> {
     Answer(app.policy.lists.targets())
 }
 
-/// `POST allow/targets`
+/// Allows a target.
+#[utoipa::path(
+    post,
+    path = "/allow/targets",
+    tag = "lists",
+    request_body = NewAllowedTarget,
+    responses((status = 201, description = "The entry", body = AllowedTarget))
+)]
 pub(super) async fn add_target(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -36,11 +49,18 @@ pub(super) async fn add_target(
     Ok((StatusCode::CREATED, Answer(AllowedTarget { id: Some(id), target, note, pinned: Vec::new() })))
 }
 
-/// `DELETE allow/targets/{id}`
+/// Denies a target again.
+#[utoipa::path(
+    delete,
+    path = "/allow/targets/{id}",
+    tag = "lists",
+    params(("id" = u64, Path, description = "The entry")),
+    responses((status = 204, description = "The entry is gone"))
+)]
 pub(super) async fn remove_target(
     State(app): State<App>,
     Caller(actor): Caller,
-    Path(id): Path<u64>,
+    Number(id): Number,
 ) -> Result<StatusCode, ApiError> {
     let gone = app.policy.lists.targets().into_iter().find(|entry| entry.id == Some(id));
     let gone = gone.ok_or_else(|| no_entry(id))?;
@@ -52,12 +72,25 @@ pub(super) async fn remove_target(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// `GET allow/writes`
+/// The writes that operators may send.
+#[utoipa::path(
+    get,
+    path = "/allow/writes",
+    tag = "lists",
+    responses((status = 200, description = "The list", body = Vec<AllowedWrite>))
+)]
 pub(super) async fn writes(State(app): State<App>) -> Answer<Vec<AllowedWrite>> {
     Answer(app.policy.lists.writes())
 }
 
-/// `POST allow/writes`
+/// Allows operators a write.
+#[utoipa::path(
+    post,
+    path = "/allow/writes",
+    tag = "lists",
+    request_body = NewAllowedWrite,
+    responses((status = 201, description = "The entry", body = AllowedWrite))
+)]
 pub(super) async fn add_write(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -74,11 +107,18 @@ pub(super) async fn add_write(
     Ok((StatusCode::CREATED, Answer(AllowedWrite { id: Some(id), write: new })))
 }
 
-/// `DELETE allow/writes/{id}`
+/// Denies operators a write again.
+#[utoipa::path(
+    delete,
+    path = "/allow/writes/{id}",
+    tag = "lists",
+    params(("id" = u64, Path, description = "The entry")),
+    responses((status = 204, description = "The entry is gone"))
+)]
 pub(super) async fn remove_write(
     State(app): State<App>,
     Caller(actor): Caller,
-    Path(id): Path<u64>,
+    Number(id): Number,
 ) -> Result<StatusCode, ApiError> {
     let gone = app.policy.lists.writes().into_iter().find(|entry| entry.id == Some(id));
     let gone = gone.ok_or_else(|| no_entry(id))?;

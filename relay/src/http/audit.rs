@@ -18,7 +18,14 @@ use crate::error::ApiError;
 /// Bytes that are read and sent at once.
 const CHUNK: usize = 64 * 1024;
 
-/// `GET audit?event=&actor=&block=&from=&to=&limit=&before=`
+/// Records of the audit, the newest first.
+#[utoipa::path(
+    get,
+    path = "/audit",
+    tag = "audit",
+    params(Filter),
+    responses((status = 200, description = "A page", body = AuditPage))
+)]
 pub(super) async fn list(
     State(app): State<App>,
     filter: Result<Query<Filter>, axum::extract::rejection::QueryRejection>,
@@ -30,12 +37,24 @@ pub(super) async fn list(
     page.map(Answer).map_err(|error| ApiError::Internal(format!("the audit cannot be read: {error}")))
 }
 
-/// `GET audit/state`
+/// Whether the audit is written, and its end.
+#[utoipa::path(
+    get,
+    path = "/audit/state",
+    tag = "audit",
+    responses((status = 200, description = "The state", body = AuditState))
+)]
 pub(super) async fn state(State(app): State<App>) -> Answer<AuditState> {
     Answer(app.audit.state())
 }
 
-/// `GET audit.jsonl`: everything up to now, a piece at a time.
+/// The whole audit, as it is kept.
+#[utoipa::path(
+    get,
+    path = "/audit.jsonl",
+    tag = "audit",
+    responses((status = 200, description = "A record per line", body = String, content_type = "application/x-ndjson"))
+)]
 pub(super) async fn export(State(app): State<App>) -> Result<impl IntoResponse, ApiError> {
     let body = match app.audit.file() {
         None => Body::from(app.audit.memory().unwrap_or_default()),

@@ -5,7 +5,7 @@ use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::IntoResponse;
 use cipdeck_shared::api::{BlockStatus, ExchangeView};
-use cipdeck_shared::config::Block;
+use cipdeck_shared::config::{Block, BlockId};
 
 use super::caller::Caller;
 use super::extract::{Id, Json, Revision};
@@ -13,12 +13,26 @@ use crate::app::App;
 use crate::draft::Draft;
 use crate::error::ApiError;
 
-/// `GET blocks`
+/// All blocks, by id.
+#[utoipa::path(
+    get,
+    path = "/blocks",
+    tag = "blocks",
+    responses((status = 200, description = "The blocks", body = Vec<Block>))
+)]
 pub(super) async fn list(State(app): State<App>) -> Answer<Vec<Block>> {
     Answer(app.blocks.hub().blocks())
 }
 
-/// `POST blocks`
+/// Stores a new block.
+#[utoipa::path(
+    post,
+    path = "/blocks",
+    tag = "blocks",
+    request_body = Draft,
+    extensions(("x-cipdeck-problems" = json!(["findings"]))),
+    responses((status = 201, description = "The block as it was stored", body = Block, headers(("location" = String, description = "Where the block is"))))
+)]
 pub(super) async fn create(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -29,12 +43,28 @@ pub(super) async fn create(
     Ok((StatusCode::CREATED, [(header::LOCATION, location)], Answer(block)))
 }
 
-/// `GET blocks/{id}`
+/// A block.
+#[utoipa::path(
+    get,
+    path = "/blocks/{id}",
+    tag = "blocks",
+    params(("id" = BlockId, Path, description = "The block")),
+    responses((status = 200, description = "The block", body = Block))
+)]
 pub(super) async fn show(State(app): State<App>, Id(id): Id) -> Result<Answer<Block>, ApiError> {
     app.blocks.block(id).map(Answer)
 }
 
-/// `PUT blocks/{id}`
+/// Replaces a block; the body names the revision that was seen.
+#[utoipa::path(
+    put,
+    path = "/blocks/{id}",
+    tag = "blocks",
+    params(("id" = BlockId, Path, description = "The block")),
+    request_body = Draft,
+    extensions(("x-cipdeck-problems" = json!(["findings", "stale_revision"]))),
+    responses((status = 200, description = "The block as it was stored", body = Block))
+)]
 pub(super) async fn replace(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -44,7 +74,18 @@ pub(super) async fn replace(
     app.blocks.replace(&actor, id, draft).await.map(Answer)
 }
 
-/// `DELETE blocks/{id}?revision=3`
+/// Cancels and deletes a block.
+#[utoipa::path(
+    delete,
+    path = "/blocks/{id}",
+    tag = "blocks",
+    params(
+        ("id" = BlockId, Path, description = "The block"),
+        ("revision" = u64, Query, description = "The revision that was seen"),
+    ),
+    extensions(("x-cipdeck-problems" = json!(["stale_revision"]))),
+    responses((status = 204, description = "It is gone"))
+)]
 pub(super) async fn delete(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -55,12 +96,26 @@ pub(super) async fn delete(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// `GET blocks/{id}/status`
+/// How a block looks now.
+#[utoipa::path(
+    get,
+    path = "/blocks/{id}/status",
+    tag = "blocks",
+    params(("id" = BlockId, Path, description = "The block")),
+    responses((status = 200, description = "The status", body = BlockStatus))
+)]
 pub(super) async fn status(State(app): State<App>, Id(id): Id) -> Result<Answer<BlockStatus>, ApiError> {
     app.blocks.status(id).map(Answer)
 }
 
-/// `GET blocks/{id}/exchange`
+/// The last exchanges of a block, the newest last.
+#[utoipa::path(
+    get,
+    path = "/blocks/{id}/exchange",
+    tag = "blocks",
+    params(("id" = BlockId, Path, description = "The block")),
+    responses((status = 200, description = "At most 16", body = Vec<ExchangeView>))
+)]
 pub(super) async fn exchange(
     State(app): State<App>,
     Id(id): Id,
@@ -68,7 +123,14 @@ pub(super) async fn exchange(
     app.blocks.exchanges(id).map(Answer)
 }
 
-/// `GET blocks/{id}/exchange.pcapng`
+/// The last exchanges of a block as a file for Wireshark.
+#[utoipa::path(
+    get,
+    path = "/blocks/{id}/exchange.pcapng",
+    tag = "blocks",
+    params(("id" = BlockId, Path, description = "The block")),
+    responses((status = 200, description = "The file", body = [u8], content_type = "application/x-pcapng"))
+)]
 pub(super) async fn capture(State(app): State<App>, Id(id): Id) -> Result<impl IntoResponse, ApiError> {
     let (name, file) = app.blocks.capture(id)?;
     let headers = [

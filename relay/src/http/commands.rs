@@ -3,6 +3,7 @@
 use axum::Json as Answer;
 use axum::extract::State;
 use cipdeck_shared::api::{BlockStatus, Checked, InRequest, RunRequest};
+use cipdeck_shared::config::BlockId;
 
 use super::caller::Caller;
 use super::extract::{Id, Json, OptionalJson};
@@ -11,7 +12,16 @@ use crate::blocks;
 use crate::draft::Draft;
 use crate::error::ApiError;
 
-/// `POST blocks/{id}/in`: answers at once.
+/// Sets the input; answers at once.
+#[utoipa::path(
+    post,
+    path = "/blocks/{id}/in",
+    tag = "commands",
+    params(("id" = BlockId, Path, description = "The block")),
+    request_body = InRequest,
+    extensions(("x-cipdeck-problems" = json!(["busy"]))),
+    responses((status = 200, description = "The status", body = BlockStatus))
+)]
 pub(super) async fn set_in(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -21,7 +31,16 @@ pub(super) async fn set_in(
     app.blocks.set_in(&actor, id, request.input, request.ticket.as_deref()).await.map(Answer)
 }
 
-/// `POST blocks/{id}/run`: answers at DN or ER.
+/// Sends one message; answers when it has ended.
+#[utoipa::path(
+    post,
+    path = "/blocks/{id}/run",
+    tag = "commands",
+    params(("id" = BlockId, Path, description = "The block")),
+    request_body = Option<RunRequest>,
+    extensions(("x-cipdeck-problems" = json!(["busy"]))),
+    responses((status = 200, description = "The status at the end, also of a message that failed", body = BlockStatus))
+)]
 pub(super) async fn run(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -31,12 +50,26 @@ pub(super) async fn run(
     app.blocks.run(&actor, id, request.ticket.as_deref()).await.map(Answer)
 }
 
-/// `POST blocks/{id}/cancel`
+/// Ends a message that is under way.
+#[utoipa::path(
+    post,
+    path = "/blocks/{id}/cancel",
+    tag = "commands",
+    params(("id" = BlockId, Path, description = "The block")),
+    responses((status = 200, description = "The status", body = BlockStatus))
+)]
 pub(super) async fn cancel(State(app): State<App>, Id(id): Id) -> Result<Answer<BlockStatus>, ApiError> {
     app.blocks.cancel(id).map(Answer)
 }
 
-/// `POST check`
+/// What is to be said about a configuration; stores nothing and sends nothing.
+#[utoipa::path(
+    post,
+    path = "/check",
+    tag = "blocks",
+    request_body = Draft,
+    responses((status = 200, description = "All findings", body = Checked))
+)]
 pub(super) async fn check(Json(draft): Json<Draft>) -> Answer<Checked> {
     Answer(blocks::check(&draft.config))
 }

@@ -10,14 +10,22 @@ use crate::app::App;
 use crate::discover::{Search, SearchError};
 use crate::error::ApiError;
 
-/// Answers when the time for answers is over. Neighbours are asked, that is what it is for; others only where the lists
-/// allow them, so that nobody sends from here to wherever they like.
-/// One search at a time: two would only hear each other's devices.
+/// Asks the network which devices there are. One search at a time: two would only hear each other's devices.
+#[utoipa::path(
+    post,
+    path = "/discover",
+    tag = "commands",
+    request_body = Option<DiscoverRequest>,
+    extensions(("x-cipdeck-problems" = json!(["busy"]))),
+    responses((status = 200, description = "Who has answered, when the time for answers is over", body = Discovered))
+)]
 pub(super) async fn discover(
     State(app): State<App>,
     OptionalJson(request): OptionalJson<DiscoverRequest>,
 ) -> Result<Answer<Discovered>, ApiError> {
     let search = Search::parse(&request.addresses.unwrap_or_default(), request.timeout_ms)?;
+    // Neighbours are asked, that is what it is for; others only where the lists allow them, so that nobody sends from
+    // here to wherever they like.
     for address in search.elsewhere() {
         let endpoint = Endpoint { host: Host::Ip(address.ip().octets()), port: address.port() };
         app.policy

@@ -6,7 +6,13 @@ use cipdeck_shared::api::Health;
 
 use crate::app::App;
 
-/// The relay lives.
+/// Whether the relay lives.
+#[utoipa::path(
+    get,
+    path = "/health",
+    tag = "relay",
+    responses((status = 200, description = "It does", body = Health))
+)]
 pub(crate) async fn show(State(app): State<App>) -> Json<Health> {
     let version = env!("CARGO_PKG_VERSION").to_owned();
     Json(Health {

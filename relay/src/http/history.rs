@@ -40,7 +40,21 @@ struct Parameters {
     value: Option<String>,
 }
 
-/// `GET history?block=b7&from=&to=&result=ok|failed|all&limit=&before=`
+/// Runs that have ended, the newest first.
+#[utoipa::path(
+    get,
+    path = "/history",
+    tag = "history",
+    params(
+        ("block" = Option<BlockId>, Query, description = "One block; otherwise all"),
+        ("from" = Option<String>, Query, format = DateTime, description = "Ended at this time or later"),
+        ("to" = Option<String>, Query, format = DateTime, description = "Ended at this time or earlier"),
+        ("result" = Option<String>, Query, pattern = "^(ok|failed|all)$", description = "ok, failed or all"),
+        ("limit" = Option<u16>, Query, minimum = 1, maximum = 1000, description = "Runs of a page; 100 without"),
+        ("before" = Option<String>, Query, description = "What an earlier answer gave as `next`"),
+    ),
+    responses((status = 200, description = "A page", body = HistoryPage))
+)]
 pub(super) async fn list(State(app): State<App>, uri: Uri) -> Result<Answer<HistoryPage>, ApiError> {
     let parameters = Parameters::of(&uri, &["block", "from", "to", "result", "limit", "before"])?;
     let limit = number("limit", parameters.limit.as_deref(), PAGE)?;
@@ -48,7 +62,20 @@ pub(super) async fn list(State(app): State<App>, uri: Uri) -> Result<Answer<Hist
     Ok(Answer(page))
 }
 
-/// `GET history/trend?block=b7&from=&to=&points=500&value=NAME`
+/// The runs of one block, summed up in buckets of equal length.
+#[utoipa::path(
+    get,
+    path = "/history/trend",
+    tag = "history",
+    params(
+        ("block" = BlockId, Query, description = "The block"),
+        ("from" = Option<String>, Query, format = DateTime, description = "Ended at this time or later"),
+        ("to" = Option<String>, Query, format = DateTime, description = "Ended at this time or earlier"),
+        ("points" = Option<u16>, Query, minimum = 1, maximum = 2000, description = "Buckets; 500 without"),
+        ("value" = Option<String>, Query, description = "The name of a decoded value; otherwise the first one"),
+    ),
+    responses((status = 200, description = "The trend", body = HistoryTrend))
+)]
 pub(super) async fn trend(State(app): State<App>, uri: Uri) -> Result<Answer<HistoryTrend>, ApiError> {
     let parameters = Parameters::of(&uri, &["block", "from", "to", "points", "value"])?;
     let block = parameters.block()?.ok_or_else(|| bad("say which block: ?block=b7"))?;
@@ -61,13 +88,32 @@ pub(super) async fn trend(State(app): State<App>, uri: Uri) -> Result<Answer<His
     Ok(Answer(app.history.trend(Chart { block, between, points: points.into(), value }).await?))
 }
 
-/// `GET history/state`
+/// How much history is kept, and what is missing.
+#[utoipa::path(
+    get,
+    path = "/history/state",
+    tag = "history",
+    responses((status = 200, description = "The state", body = HistoryState))
+)]
 pub(super) async fn state(State(app): State<App>, uri: Uri) -> Result<Answer<HistoryState>, ApiError> {
     Parameters::of(&uri, &[])?;
     Ok(Answer(app.history.state().await?))
 }
 
-/// `GET history.csv?block=b7&from=&to=&result=ok|failed|all&value=NAME`: all of them, a page at a time.
+/// Runs that have ended, as a file for a spreadsheet.
+#[utoipa::path(
+    get,
+    path = "/history.csv",
+    tag = "history",
+    params(
+        ("block" = Option<BlockId>, Query, description = "One block; otherwise all"),
+        ("from" = Option<String>, Query, format = DateTime, description = "Ended at this time or later"),
+        ("to" = Option<String>, Query, format = DateTime, description = "Ended at this time or earlier"),
+        ("result" = Option<String>, Query, pattern = "^(ok|failed|all)$", description = "ok, failed or all"),
+        ("value" = Option<String>, Query, description = "The name of a decoded value; otherwise the first one"),
+    ),
+    responses((status = 200, description = "A run per line", body = String, content_type = "text/csv"))
+)]
 pub(super) async fn csv(State(app): State<App>, uri: Uri) -> Result<impl IntoResponse, ApiError> {
     let parameters = Parameters::of(&uri, &["block", "from", "to", "result", "value"])?;
     let asked = parameters.asked()?;

@@ -7,6 +7,7 @@ mod audit;
 mod blocks;
 mod caller;
 mod commands;
+mod describe;
 mod discovery;
 mod extract;
 mod guard;
@@ -21,8 +22,12 @@ use axum::extract::{DefaultBodyLimit, State};
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware;
 use axum::response::Response;
-use axum::routing::{delete, get, patch, post};
+use axum::routing::get;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
 
+use self::access::{passes, session, users, view};
 use crate::app::App;
 use crate::error::ApiError;
 use crate::ws;
@@ -34,51 +39,8 @@ pub(crate) use self::need::{NEEDS, Need};
 
 /// Everything that the relay serves.
 pub(crate) fn router(app: App) -> Router {
-    let api = Router::new()
-        .route("/health", get(health::show))
-        .route("/session", get(access::show).post(access::sign_in).delete(access::sign_out))
-        .route("/session/active", post(access::active))
-        .route("/session/password", post(access::change_password))
-        .route("/setup", post(access::set_up))
-        .route("/users", get(access::list).post(access::add))
-        .route("/users/{name}", patch(access::change).delete(access::remove))
-        .route("/sessions", get(access::sessions))
-        .route("/sessions/{id}", delete(access::end_session))
-        .route("/tokens", get(access::tokens).post(access::make_token))
-        .route("/tokens/{id}", delete(access::revoke_token))
-        .route("/view-links", get(access::links).post(access::make_link))
-        .route("/view-links/{id}", delete(access::revoke_link))
-        .route("/ws", get(ws::upgrade))
-        .route("/check", post(commands::check))
-        .route("/discover", post(discovery::discover))
-        .route("/audit", get(audit::list))
-        .route("/audit/state", get(audit::state))
-        .route("/audit.jsonl", get(audit::export))
-        .route("/history", get(history::list))
-        .route("/history.csv", get(history::csv))
-        .route("/history/trend", get(history::trend))
-        .route("/history/state", get(history::state))
-        .route("/targets", get(targets::list))
-        .route("/window", get(write::show).post(write::open).delete(write::close))
-        .route("/read-only", get(write::read_only).put(write::set_read_only))
-        .route("/allow/targets", get(allow::targets).post(allow::add_target))
-        .route("/allow/targets/{id}", delete(allow::remove_target))
-        .route("/allow/writes", get(allow::writes).post(allow::add_write))
-        .route("/allow/writes/{id}", delete(allow::remove_write))
-        .route("/blocks", get(blocks::list).post(blocks::create))
-        .route("/blocks/{id}", get(blocks::show).put(blocks::replace).delete(blocks::delete))
-        .route("/blocks/{id}/status", get(blocks::status))
-        .route("/blocks/{id}/exchange", get(blocks::exchange))
-        .route("/blocks/{id}/exchange.pcapng", get(blocks::capture))
-        .route("/blocks/{id}/in", post(commands::set_in))
-        .route("/blocks/{id}/run", post(commands::run))
-        .route("/blocks/{id}/write", post(write::offer))
-        .route("/blocks/{id}/cancel", post(commands::cancel))
-        .fallback(unknown)
-        .method_not_allowed_fallback(unknown);
-    Router::new()
-        .nest("/api/v1", api)
-        .route("/view/{secret}", get(access::open))
+    Router::from(routes())
+        .method_not_allowed_fallback(unknown)
         .route("/api", get(unknown))
         .route("/api/{*rest}", get(unknown))
         .fallback(assets::show)
@@ -88,6 +50,54 @@ pub(crate) fn router(app: App) -> Router {
         .layer(middleware::from_fn_with_state(app.clone(), guard::check))
         .layer(middleware::map_response_with_state(app.clone(), secure))
         .with_state(app)
+}
+
+/// All that is described: every route takes the description that stands at its handler.
+fn routes() -> OpenApiRouter<App> {
+    let api = OpenApiRouter::new()
+        .routes(routes!(health::show))
+        .routes(routes!(describe::show))
+        .routes(routes!(session::show, session::sign_in, session::sign_out))
+        .routes(routes!(session::active))
+        .routes(routes!(session::change_password))
+        .routes(routes!(session::set_up))
+        .routes(routes!(users::list, users::add))
+        .routes(routes!(users::change, users::remove))
+        .routes(routes!(users::sessions))
+        .routes(routes!(users::end_session))
+        .routes(routes!(passes::tokens, passes::make_token))
+        .routes(routes!(passes::revoke_token))
+        .routes(routes!(passes::links, passes::make_link))
+        .routes(routes!(passes::revoke_link))
+        .routes(routes!(ws::upgrade))
+        .routes(routes!(commands::check))
+        .routes(routes!(discovery::discover))
+        .routes(routes!(audit::list))
+        .routes(routes!(audit::state))
+        .routes(routes!(audit::export))
+        .routes(routes!(history::list))
+        .routes(routes!(history::csv))
+        .routes(routes!(history::trend))
+        .routes(routes!(history::state))
+        .routes(routes!(targets::list))
+        .routes(routes!(write::show, write::open, write::close))
+        .routes(routes!(write::read_only, write::set_read_only))
+        .routes(routes!(allow::targets, allow::add_target))
+        .routes(routes!(allow::remove_target))
+        .routes(routes!(allow::writes, allow::add_write))
+        .routes(routes!(allow::remove_write))
+        .routes(routes!(blocks::list, blocks::create))
+        .routes(routes!(blocks::show, blocks::replace, blocks::delete))
+        .routes(routes!(blocks::status))
+        .routes(routes!(blocks::exchange))
+        .routes(routes!(blocks::capture))
+        .routes(routes!(commands::set_in))
+        .routes(routes!(commands::run))
+        .routes(routes!(write::offer))
+        .routes(routes!(commands::cancel))
+        .fallback(unknown);
+    let described = describe::Relay::openapi();
+    OpenApiRouter::with_openapi(described).nest("/api/v1", api).routes(routes!(view::open))
 }
 
 async fn unknown(method: Method, uri: Uri) -> ApiError {

@@ -4,6 +4,7 @@ use axum::Json as Answer;
 use axum::extract::State;
 use axum::http::StatusCode;
 use cipdeck_shared::api::{ActorKind, NewWindow, ReadOnly, WriteRequest, WriteState, WriteTicket};
+use cipdeck_shared::config::BlockId;
 
 use super::caller::Caller;
 use super::extract::{Id, Json, OptionalJson};
@@ -11,12 +12,26 @@ use crate::app::App;
 use crate::error::ApiError;
 use crate::permit::OpenError;
 
-/// `GET window`
+/// The write window, and whether anything can be written.
+#[utoipa::path(
+    get,
+    path = "/window",
+    tag = "writing",
+    responses((status = 200, description = "The window", body = WriteState))
+)]
 pub(super) async fn show(State(app): State<App>) -> Answer<WriteState> {
     Answer(app.policy.write_state())
 }
 
-/// `POST window`
+/// Opens the write window.
+#[utoipa::path(
+    post,
+    path = "/window",
+    tag = "writing",
+    request_body = Option<NewWindow>,
+    extensions(("x-cipdeck-problems" = json!(["busy"]))),
+    responses((status = 200, description = "The window", body = WriteState))
+)]
 pub(super) async fn open(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -26,13 +41,28 @@ pub(super) async fn open(
     Ok(Answer(app.policy.write_state()))
 }
 
-/// `DELETE window`
+/// Closes the write window.
+#[utoipa::path(
+    delete,
+    path = "/window",
+    tag = "writing",
+    responses((status = 204, description = "It is closed"))
+)]
 pub(super) async fn close(State(app): State<App>, Caller(actor): Caller) -> StatusCode {
     app.policy.close_window(&actor);
     StatusCode::NO_CONTENT
 }
 
-/// `POST blocks/{id}/write`: reads what is there, and gives a ticket for the write.
+/// The first half of a write: reads what is there, and gives a ticket for the write.
+#[utoipa::path(
+    post,
+    path = "/blocks/{id}/write",
+    tag = "writing",
+    params(("id" = BlockId, Path, description = "The block")),
+    request_body = WriteRequest,
+    extensions(("x-cipdeck-problems" = json!(["busy", "stale_revision"]))),
+    responses((status = 200, description = "The ticket", body = WriteTicket))
+)]
 pub(super) async fn offer(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -42,12 +72,25 @@ pub(super) async fn offer(
     app.blocks.offer(&actor, id, request.revision).await.map(Answer)
 }
 
-/// `GET read-only`
+/// Whether all writing is stopped.
+#[utoipa::path(
+    get,
+    path = "/read-only",
+    tag = "writing",
+    responses((status = 200, description = "The switch", body = ReadOnly))
+)]
 pub(super) async fn read_only(State(app): State<App>) -> Answer<ReadOnly> {
     Answer(ReadOnly { read_only: app.policy.read_only.is_on() })
 }
 
-/// `PUT read-only`: on from everywhere, off with local access alone.
+/// Stops all writing; only local access allows it again.
+#[utoipa::path(
+    put,
+    path = "/read-only",
+    tag = "writing",
+    request_body = ReadOnly,
+    responses((status = 200, description = "The switch", body = ReadOnly))
+)]
 pub(super) async fn set_read_only(
     State(app): State<App>,
     Caller(actor): Caller,

@@ -22,7 +22,17 @@ const MAX_MESSAGE: usize = 64 * 1024;
 /// connection is closed.
 const MAX_READ: usize = 1024 * 1024;
 
-/// Makes a viewer of the request. `Host` and `Origin` have been checked.
+/// Opens the WebSocket, which docs/WEBSOCKET.md describes.
+///
+/// The messages are the schemas `ClientMessage` and `ServerMessage`.
+#[utoipa::path(
+    get,
+    path = "/ws",
+    tag = "relay",
+    extensions(("x-cipdeck-problems" = json!(["unreadable"]))),
+    responses((status = 101, description = "The WebSocket is open"))
+)]
+// `Host` and `Origin` have been checked.
 pub(crate) async fn upgrade(
     State(app): State<App>,
     Caller(actor): Caller,

@@ -9,6 +9,7 @@ use super::secret::hide;
 
 /// What a person or a program may do. docs/SECURITY-MODEL.md has the whole table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
     /// Looks, and sends nothing.
@@ -63,6 +64,7 @@ impl Role {
 
 /// How a caller is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ActorKind {
     /// Somebody who has signed in.
@@ -79,6 +81,7 @@ pub enum ActorKind {
 
 /// `GET /api/v1/session`: who the caller is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SessionView {
     /// What is to be done first.
     pub state: SessionState,
@@ -95,6 +98,7 @@ pub struct SessionView {
 
 /// Whether somebody is signed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SessionState {
     /// There is no administrator yet: the set-up code is on the relay's terminal.
@@ -107,6 +111,7 @@ pub enum SessionState {
 
 /// Who calls.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Caller {
     /// The user's, the token's or the link's name; `local` for local access.
     pub name: String,
@@ -127,6 +132,7 @@ pub struct Caller {
 
 /// `POST /api/v1/setup`: makes the first administrator.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SetUp {
     /// As the relay printed it; spaces, dashes and case do not matter.
@@ -139,6 +145,7 @@ pub struct SetUp {
 
 /// `POST /api/v1/session`: signs in.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SignIn {
     /// The user's name.
@@ -149,6 +156,7 @@ pub struct SignIn {
 
 /// A user.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct UserView {
     /// 1 to 64 of `a-z 0-9 . _ -`.
     pub name: String,
@@ -166,6 +174,7 @@ pub struct UserView {
 
 /// `POST /api/v1/users`.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewUser {
     /// 1 to 64 of `a-z 0-9 . _ -`.
@@ -179,6 +188,7 @@ pub struct NewUser {
 /// `PATCH /api/v1/users/{name}`: what is left out stays. A changed role acts at once; a new password and `disabled`
 /// end all sessions of the user.
 #[derive(Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct UserChange {
     /// The new role.
@@ -194,6 +204,7 @@ pub struct UserChange {
 
 /// `POST /api/v1/session/password`: one's own.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PasswordChange {
     /// The present one.
@@ -204,6 +215,7 @@ pub struct PasswordChange {
 
 /// An open session, in `GET /api/v1/sessions`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SessionEntry {
     /// Names it for `DELETE /api/v1/sessions/{id}`; opens nothing.
     pub id: u64,
@@ -225,6 +237,7 @@ pub struct SessionEntry {
 
 /// A token or a view link.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PassView {
     /// Names it for DELETE; opens nothing.
     pub id: u64,
@@ -245,6 +258,7 @@ pub struct PassView {
 
 /// `POST /api/v1/tokens`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewToken {
     /// 1 to 64 characters.
@@ -260,6 +274,7 @@ pub struct NewToken {
 
 /// A new token: the secret is shown this once.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct TokenCreated {
     /// What can be seen of it from now on.
     pub token: PassView,
@@ -269,6 +284,7 @@ pub struct TokenCreated {
 
 /// `POST /api/v1/view-links`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewViewLink {
     /// 1 to 64 characters: where the tablet hangs.
@@ -279,6 +295,7 @@ pub struct NewViewLink {
 
 /// A new view link: shown this once.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ViewLinkCreated {
     /// What can be seen of it from now on.
     pub link: PassView,

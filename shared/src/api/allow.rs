@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// A target that may be reached.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AllowedTarget {
     /// Names it for DELETE; none for one of the configuration file, which is changed there.
     pub id: Option<u64>,
@@ -22,6 +23,7 @@ pub struct AllowedTarget {
 
 /// `POST /api/v1/allow/targets`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewAllowedTarget {
     /// As in [`AllowedTarget`].
@@ -33,6 +35,7 @@ pub struct NewAllowedTarget {
 
 /// A write that an operator may send.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AllowedWrite {
     /// Names it for DELETE; none for one of the configuration file.
     pub id: Option<u64>,
@@ -43,6 +46,7 @@ pub struct AllowedWrite {
 
 /// `POST /api/v1/allow/writes`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewAllowedWrite {
     /// As in [`AllowedTarget`]; the target has to be allowed as well.

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 /// One record.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AuditRecord {
     /// Its number; the first one has 1.
     pub seq: u64,
@@ -31,6 +32,7 @@ pub struct AuditRecord {
 
 /// `GET /api/v1/audit`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AuditPage {
     /// The newest first.
     pub records: Vec<AuditRecord>,
@@ -40,6 +42,7 @@ pub struct AuditPage {
 
 /// `GET /api/v1/audit/state`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AuditState {
     /// The number of the newest record.
     pub records: u64,
@@ -56,6 +59,7 @@ pub struct AuditState {
 
 /// The end of the chain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AuditHead {
     /// Its number.
     pub seq: u64,

@@ -11,6 +11,7 @@ use crate::wire::ListIdentityItem;
 
 /// `POST /api/v1/discover`; an empty body asks on all networks of the machine.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DiscoverRequest {
     /// `192.168.1.100`, `192.168.1.100:44818`, or the broadcast address of one of the machine's own networks. Absent
@@ -24,6 +25,7 @@ pub struct DiscoverRequest {
 
 /// Who has answered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Discovered {
     /// Each device once, by address.
     pub devices: Vec<DiscoveredDevice>,
@@ -34,6 +36,7 @@ pub struct Discovered {
 /// One device: names and conditions in words, and the numbers behind them. A number without a word is its own word, in
 /// hexadecimal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct DiscoveredDevice {
     /// Where the answer came from.
     pub address: String,

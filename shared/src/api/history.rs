@@ -9,6 +9,7 @@ use crate::config::BlockId;
 
 /// `GET /api/v1/history`: runs that have ended, the newest first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryPage {
     /// The runs.
     pub runs: Vec<HistoryRun>,
@@ -20,6 +21,7 @@ pub struct HistoryPage {
 
 /// One run: a message that has ended with DN or ER.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryRun {
     /// Names the run for good; what it is made of means nothing.
     pub id: String,
@@ -61,6 +63,7 @@ pub struct HistoryRun {
 
 /// A decoded value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryValue {
     /// `product name`; `data as INT` for a guess. What `history/trend` takes as `value`.
     pub name: String,
@@ -78,6 +81,7 @@ pub struct HistoryValue {
 
 /// Runs that are not in the history any more, or never were.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryDropped {
     /// When that was noticed last (RFC 3339).
     pub at: String,
@@ -96,6 +100,7 @@ pub struct HistoryDropped {
 
 /// Why runs are missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum HistoryLoss {
     /// More ended than could be written in time.
@@ -128,6 +133,7 @@ impl HistoryLoss {
 
 /// `GET /api/v1/history/trend`: the runs of one block, summed up in buckets of equal length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryTrend {
     /// Whose runs.
     pub block: BlockId,
@@ -151,6 +157,7 @@ pub struct HistoryTrend {
 
 /// The runs of a short time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryBucket {
     /// Which bucket: it begins `index` times `bucket_us` after `from`.
     pub index: u32,
@@ -166,6 +173,7 @@ pub struct HistoryBucket {
 
 /// Smallest, mean and biggest number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryRange {
     /// The smallest.
     pub min: f64,
@@ -177,6 +185,7 @@ pub struct HistoryRange {
 
 /// `GET /api/v1/history/state`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryState {
     /// Whether runs are kept: FALSE without a data folder, and when the configuration says so.
     pub enabled: bool,
@@ -200,6 +209,7 @@ pub struct HistoryState {
 
 /// What `GET /api/v1/health` says about the history.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HistoryHealth {
     /// Whether runs are being kept: FALSE while the disk is full, and when history is off.
     pub recording: bool,

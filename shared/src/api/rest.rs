@@ -13,6 +13,7 @@ use crate::plan::{self, Rule, Severity};
 
 /// `GET /api/v1/health`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Health {
     /// `ok`.
     pub status: String,
@@ -27,6 +28,7 @@ pub struct Health {
 
 /// `POST /api/v1/blocks/{id}/in`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InRequest {
     /// The new state of the input.
@@ -39,6 +41,7 @@ pub struct InRequest {
 
 /// `POST /api/v1/blocks/{id}/run`; an empty body is allowed for a read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
     /// For a block that may write: from `POST blocks/{id}/write`.
@@ -48,6 +51,7 @@ pub struct RunRequest {
 
 /// `POST /api/v1/check` and `cipdeck check --json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Checked {
     /// All findings.
     pub findings: Vec<Finding>,
@@ -57,6 +61,7 @@ pub struct Checked {
 
 /// One finding in JSON.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Finding {
     /// `AppCfg.MemberId[1]`
     pub field: String,
@@ -107,6 +112,7 @@ pub fn findings(findings: &[plan::Finding]) -> Vec<Finding> {
 
 /// One exchange of a block: what went out and what came back, as hexadecimal text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ExchangeView {
     /// When the message ended (RFC 3339).
     pub at: String,
@@ -136,6 +142,7 @@ impl ExchangeView {
 
 /// `application/problem+json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Problem {
     /// The code in words.
     pub title: String,
@@ -223,6 +230,24 @@ impl ProblemCode {
     }
 }
 
+impl ProblemCode {
+    /// The HTTP status that it comes with.
+    pub const fn status(&self) -> u16 {
+        match self {
+            Self::Unreadable => 400,
+            Self::SignedOut => 401,
+            Self::NotPermitted => 403,
+            Self::NotFound => 404,
+            Self::Busy | Self::Conflict | Self::StaleRevision => 409,
+            Self::TooLarge => 413,
+            Self::Findings => 422,
+            Self::TooMany => 429,
+            Self::Unavailable => 503,
+            Self::Internal | Self::Other(_) => 500,
+        }
+    }
+}
+
 impl From<String> for ProblemCode {
     fn from(word: String) -> Self {
         Self::ALL.into_iter().find(|code| code.word() == word).unwrap_or(Self::Other(word))
@@ -235,8 +260,23 @@ impl From<ProblemCode> for String {
     }
 }
 
+#[cfg(feature = "openapi")]
+impl utoipa::PartialSchema for ProblemCode {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        utoipa::openapi::ObjectBuilder::new()
+            .schema_type(utoipa::openapi::Type::String)
+            .examples(Self::ALL.map(String::from))
+            .description(Some("The stable name of a problem. New ones may appear."))
+            .into()
+    }
+}
+
+#[cfg(feature = "openapi")]
+impl utoipa::ToSchema for ProblemCode {}
+
 /// What a command over the WebSocket is answered with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
     /// It was carried out; the status at its end.

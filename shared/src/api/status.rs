@@ -14,6 +14,7 @@ pub const MAX_EDGES: usize = 16;
 
 /// Everything that a viewer sees of a running block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct BlockStatus {
     /// Which block.
     pub block: BlockId,
@@ -63,6 +64,7 @@ pub struct BlockStatus {
 
 /// The last success of a block, kept while a new run clears `ResData`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct LastSuccess {
     /// Message router bytes of the request that it answers, as hexadecimal text.
     #[serde(default)]

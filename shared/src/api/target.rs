@@ -11,6 +11,7 @@ use crate::wire::{Epath, Segment};
 
 /// One endpoint: its session, its connections, and what is peculiar about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct TargetStatus {
     /// `192.168.1.100:44818`, or `0,0` for the built-in device.
     pub target: String,
@@ -42,6 +43,7 @@ pub struct TargetStatus {
 
 /// An open class 3 connection.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ConnectionStatus {
     /// The hops behind the TCP endpoint, as in a path: `1,0`; empty for the endpoint itself.
     pub route: String,

@@ -8,6 +8,7 @@ use super::secret::hide;
 
 /// What everybody sees about writing, first and whenever it changes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct WriteState {
     /// The open write window.
     pub window: Option<WindowView>,
@@ -20,6 +21,7 @@ pub struct WriteState {
 
 /// The time in which writes are possible.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct WindowView {
     /// Who opened it.
     pub owner: String,
@@ -33,6 +35,7 @@ pub struct WindowView {
 
 /// `POST /api/v1/window`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NewWindow {
     /// 1 to 60; 15 when left out.
@@ -42,6 +45,7 @@ pub struct NewWindow {
 
 /// `POST /api/v1/blocks/{id}/write`: the first half of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct WriteRequest {
     /// The revision that the person has seen.
@@ -50,6 +54,7 @@ pub struct WriteRequest {
 
 /// The second half of a write needs this. Good for one command of the caller who asked for it.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct WriteTicket {
     /// To be given as `ticket` with `run` or `in`.
     pub ticket: String,
@@ -70,6 +75,7 @@ pub struct WriteTicket {
 
 /// A value of a device, as bytes and in words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ReadValue {
     /// The bytes, as hexadecimal text.
     pub data: String,
@@ -79,6 +85,7 @@ pub struct ReadValue {
 
 /// A write that has been carried out, in the answer to its command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Written {
     /// What was there before.
     pub old: Option<ReadValue>,
@@ -92,6 +99,7 @@ pub struct Written {
 
 /// `GET` and `PUT /api/v1/read-only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ReadOnly {
     /// Nothing is written.

@@ -17,6 +17,7 @@ pub const PROTOCOL_VERSION: u32 = 2;
 
 /// What the relay says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum ServerMessage {
     /// First.
@@ -72,6 +73,7 @@ pub enum ServerMessage {
 
 /// What a viewer says.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
 pub enum ClientMessage {
     /// One shot, whatever `TriggerType`.

@@ -10,6 +10,7 @@ use super::msg_cip_generic::MsgCipGeneric;
 /// It is read as a configuration whose unknown members have the id and the revision: one way to read configurations
 /// instead of two saves 10 kB of the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(try_from = "MsgCipGeneric")]
 pub struct Block {
     /// Given by the relay.

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 
 /// The number behind `b7`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(value_type = String, pattern = "^b(0|[1-9][0-9]{0,9})$", examples("b7")))]
 #[serde(into = "String", try_from = "String")]
 pub struct BlockId(pub u32);
 

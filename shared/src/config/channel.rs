@@ -76,6 +76,20 @@ impl From<Channel> for String {
     }
 }
 
+#[cfg(feature = "openapi")]
+impl utoipa::PartialSchema for Channel {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        utoipa::openapi::ObjectBuilder::new()
+            .schema_type(utoipa::openapi::Type::String)
+            .pattern(Some("^(controller[2-8]?|monitor)$"))
+            .description(Some("A communication channel: its messages share its buffers."))
+            .into()
+    }
+}
+
+#[cfg(feature = "openapi")]
+impl utoipa::ToSchema for Channel {}
+
 #[cfg(test)]
 mod tests {
     use super::*;

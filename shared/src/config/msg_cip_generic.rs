@@ -17,6 +17,7 @@ pub type Extra = BTreeMap<String, serde_json::Value>;
 
 /// The configuration of one block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct MsgCipGeneric {
     /// What the user calls it.
     pub name: String,
@@ -55,11 +56,13 @@ pub struct MsgCipGeneric {
     pub res_data_size: i64,
     /// Unknown members.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(ignore))]
     pub extra: Extra,
 }
 
 /// CIPCONTROLCFG: execution of the block.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CipControlCfg {
     /// An input, stored FALSE.
     #[serde(rename = "Cancel", default)]
@@ -72,11 +75,13 @@ pub struct CipControlCfg {
     pub str_mode: i64,
     /// Unknown members.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(ignore))]
     pub extra: Extra,
 }
 
 /// CIPAPPCFG: service and path. 2080-RM001D p. 189.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CipAppCfg {
     /// 1..=127.
     #[serde(rename = "Service")]
@@ -98,11 +103,13 @@ pub struct CipAppCfg {
     pub member_id: Vec<i64>,
     /// Unknown members.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(ignore))]
     pub extra: Extra,
 }
 
 /// CIPTARGETCFG: device, connection mode and timeouts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CipTargetCfg {
     /// `"4,192.168.1.100"`: at most 80 characters and two hops.
     #[serde(rename = "Path")]
@@ -121,6 +128,7 @@ pub struct CipTargetCfg {
     pub conn_close: bool,
     /// Unknown members.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(ignore))]
     pub extra: Extra,
 }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a target is known to want. docs/PROFILES.md lists what each changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Profile {
     /// Asked of the device's identity, where it matters.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// `Status.StatusBits`. 2080-RM001D p. 179; bits 5 and 6 from document 13032001.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(transparent)]
 pub struct StatusBits(pub u16);
 
@@ -45,6 +46,7 @@ impl StatusBits {
 
 /// CIPSTATUS. 2080-RM001D p. 191.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CipStatus {
     /// TRUE when the block has met an error.
     #[serde(rename = "Error")]
@@ -65,6 +67,7 @@ pub struct CipStatus {
 
 /// How far a message is, finer than the bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Phase {
     /// Never triggered, or reset.
@@ -93,6 +96,7 @@ impl Phase {
 
 /// What happened, beside the manual's numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Cause {
     /// What happened.
     pub what: CauseKind,
@@ -151,6 +155,7 @@ impl Cause {
 
 /// Who refused a message before it reached its object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RefusedBy {
     /// A router on the way: its Connection Manager answers Unconnected_Send itself.
@@ -248,6 +253,20 @@ impl From<CauseKind> for String {
         kind.word().into()
     }
 }
+
+#[cfg(feature = "openapi")]
+impl utoipa::PartialSchema for CauseKind {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        utoipa::openapi::ObjectBuilder::new()
+            .schema_type(utoipa::openapi::Type::String)
+            .examples(Self::ALL.map(String::from))
+            .description(Some("What happened. New words may appear."))
+            .into()
+    }
+}
+
+#[cfg(feature = "openapi")]
+impl utoipa::ToSchema for CauseKind {}
 
 #[cfg(test)]
 mod tests {

@@ -44,6 +44,7 @@ pub struct ConnectionView {
 
 /// The TCP connection and its session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum TargetState {
     /// No session: nothing has been sent yet, or it was closed after use.

@@ -22,6 +22,7 @@ pub struct Finding {
 
 /// How bad a finding is. Only errors stop a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Nothing is stored and nothing is sent.

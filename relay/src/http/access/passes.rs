@@ -12,12 +12,26 @@ use crate::access::{MadeLink, MadeToken, PassKind};
 use crate::app::App;
 use crate::error::ApiError;
 
-/// `GET tokens`
+/// All API tokens, without their secrets.
+#[utoipa::path(
+    get,
+    path = "/tokens",
+    tag = "access",
+    responses((status = 200, description = "The tokens", body = Vec<PassView>))
+)]
 pub(in crate::http) async fn tokens(State(app): State<App>) -> Answer<Vec<PassView>> {
     Answer(app.access.passes(PassKind::Token))
 }
 
-/// `POST tokens`
+/// Makes an API token; its secret is shown this once.
+#[utoipa::path(
+    post,
+    path = "/tokens",
+    tag = "access",
+    request_body = NewToken,
+    extensions(("x-cipdeck-problems" = json!(["conflict"]))),
+    responses((status = 201, description = "The token", body = TokenCreated))
+)]
 pub(in crate::http) async fn make_token(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -27,7 +41,14 @@ pub(in crate::http) async fn make_token(
     Ok((StatusCode::CREATED, Answer(TokenCreated { token, secret })))
 }
 
-/// `DELETE tokens/{id}`
+/// Revokes an API token.
+#[utoipa::path(
+    delete,
+    path = "/tokens/{id}",
+    tag = "access",
+    params(("id" = u64, Path, description = "The token")),
+    responses((status = 204, description = "It is gone"))
+)]
 pub(in crate::http) async fn revoke_token(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -37,12 +58,26 @@ pub(in crate::http) async fn revoke_token(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// `GET view-links`
+/// All view links, without their secrets.
+#[utoipa::path(
+    get,
+    path = "/view-links",
+    tag = "access",
+    responses((status = 200, description = "The links", body = Vec<PassView>))
+)]
 pub(in crate::http) async fn links(State(app): State<App>) -> Answer<Vec<PassView>> {
     Answer(app.access.passes(PassKind::ViewLink))
 }
 
-/// `POST view-links`
+/// Makes a view link; it is shown this once.
+#[utoipa::path(
+    post,
+    path = "/view-links",
+    tag = "access",
+    request_body = NewViewLink,
+    extensions(("x-cipdeck-problems" = json!(["conflict"]))),
+    responses((status = 201, description = "The link", body = ViewLinkCreated))
+)]
 pub(in crate::http) async fn make_link(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -56,7 +91,14 @@ pub(in crate::http) async fn make_link(
     Ok((StatusCode::CREATED, Answer(ViewLinkCreated { link, url, qr_svg })))
 }
 
-/// `DELETE view-links/{id}`
+/// Revokes a view link.
+#[utoipa::path(
+    delete,
+    path = "/view-links/{id}",
+    tag = "access",
+    params(("id" = u64, Path, description = "The link")),
+    responses((status = 204, description = "It is gone"))
+)]
 pub(in crate::http) async fn revoke_link(
     State(app): State<App>,
     Caller(actor): Caller,

@@ -15,12 +15,26 @@ use crate::app::App;
 use crate::error::ApiError;
 use crate::wall_clock;
 
-/// `GET session`: also for somebody who is not signed in.
+/// Who the caller is; also for somebody who is not signed in.
+#[utoipa::path(
+    get,
+    path = "/session",
+    tag = "access",
+    responses((status = 200, description = "The caller", body = SessionView))
+)]
 pub(in crate::http) async fn show(State(app): State<App>, request: Request) -> Answer<SessionView> {
     Answer(view(&app, request.extensions().get::<Known>()))
 }
 
-/// `POST session`
+/// Signs in.
+#[utoipa::path(
+    post,
+    path = "/session",
+    tag = "access",
+    request_body = SignIn,
+    extensions(("x-cipdeck-problems" = json!(["signed_out", "too_many"]))),
+    responses((status = 200, description = "The caller", body = SessionView, headers(("set-cookie" = String, description = "The session"))))
+)]
 pub(in crate::http) async fn sign_in(
     State(app): State<App>,
     Peer(peer): Peer,
@@ -34,7 +48,15 @@ pub(in crate::http) async fn sign_in(
     signed(&app, &signed_in)
 }
 
-/// `POST setup`
+/// Makes the first administrator and signs in.
+#[utoipa::path(
+    post,
+    path = "/setup",
+    tag = "access",
+    request_body = SetUp,
+    extensions(("x-cipdeck-problems" = json!(["conflict", "too_many"]))),
+    responses((status = 200, description = "The caller", body = SessionView, headers(("set-cookie" = String, description = "The session"))))
+)]
 pub(in crate::http) async fn set_up(
     State(app): State<App>,
     Peer(peer): Peer,
@@ -44,7 +66,13 @@ pub(in crate::http) async fn set_up(
     signed(&app, &signed_in)
 }
 
-/// `DELETE session`
+/// Signs out.
+#[utoipa::path(
+    delete,
+    path = "/session",
+    tag = "access",
+    responses((status = 204, description = "Signed out"))
+)]
 pub(in crate::http) async fn sign_out(State(app): State<App>, caller: Option<Caller>) -> impl IntoResponse {
     if let Some(Caller(actor)) = caller {
         app.access.sign_out(&actor);
@@ -53,12 +81,26 @@ pub(in crate::http) async fn sign_out(State(app): State<App>, caller: Option<Cal
     (StatusCode::NO_CONTENT, AppendHeaders(forget))
 }
 
-/// `POST session/active`: that it came is all it says.
+/// Somebody is there: the session is not locked for being idle.
+#[utoipa::path(
+    post,
+    path = "/session/active",
+    tag = "access",
+    responses((status = 204, description = "Noted"))
+)]
 pub(in crate::http) async fn active() -> StatusCode {
     StatusCode::NO_CONTENT
 }
 
-/// `POST session/password`
+/// Changes one's own password.
+#[utoipa::path(
+    post,
+    path = "/session/password",
+    tag = "access",
+    request_body = PasswordChange,
+    extensions(("x-cipdeck-problems" = json!(["too_many"]))),
+    responses((status = 204, description = "It is changed"))
+)]
 pub(in crate::http) async fn change_password(
     State(app): State<App>,
     Caller(actor): Caller,

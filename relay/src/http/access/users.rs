@@ -10,12 +10,26 @@ use super::super::extract::{Json, Name, Number};
 use crate::app::App;
 use crate::error::ApiError;
 
-/// `GET users`
+/// All users.
+#[utoipa::path(
+    get,
+    path = "/users",
+    tag = "access",
+    responses((status = 200, description = "The users", body = Vec<UserView>))
+)]
 pub(in crate::http) async fn list(State(app): State<App>) -> Answer<Vec<UserView>> {
     Answer(app.access.users())
 }
 
-/// `POST users`
+/// Adds a user.
+#[utoipa::path(
+    post,
+    path = "/users",
+    tag = "access",
+    request_body = NewUser,
+    extensions(("x-cipdeck-problems" = json!(["conflict"]))),
+    responses((status = 201, description = "The user", body = UserView))
+)]
 pub(in crate::http) async fn add(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -25,7 +39,16 @@ pub(in crate::http) async fn add(
     Ok((StatusCode::CREATED, Answer(user)))
 }
 
-/// `PATCH users/{name}`
+/// Changes role, password or lock of a user.
+#[utoipa::path(
+    patch,
+    path = "/users/{name}",
+    tag = "access",
+    params(("name" = String, Path, description = "The user")),
+    request_body = UserChange,
+    extensions(("x-cipdeck-problems" = json!(["conflict"]))),
+    responses((status = 200, description = "The user", body = UserView))
+)]
 pub(in crate::http) async fn change(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -35,7 +58,15 @@ pub(in crate::http) async fn change(
     app.access.change_user(&name, change, &actor).await.map(Answer)
 }
 
-/// `DELETE users/{name}`
+/// Removes a user.
+#[utoipa::path(
+    delete,
+    path = "/users/{name}",
+    tag = "access",
+    params(("name" = String, Path, description = "The user")),
+    extensions(("x-cipdeck-problems" = json!(["conflict"]))),
+    responses((status = 204, description = "The user is gone"))
+)]
 pub(in crate::http) async fn remove(
     State(app): State<App>,
     Caller(actor): Caller,
@@ -45,12 +76,25 @@ pub(in crate::http) async fn remove(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// `GET sessions`
+/// All open sessions.
+#[utoipa::path(
+    get,
+    path = "/sessions",
+    tag = "access",
+    responses((status = 200, description = "The sessions", body = Vec<SessionEntry>))
+)]
 pub(in crate::http) async fn sessions(State(app): State<App>) -> Answer<Vec<SessionEntry>> {
     Answer(app.access.sessions())
 }
 
-/// `DELETE sessions/{id}`
+/// Ends a session.
+#[utoipa::path(
+    delete,
+    path = "/sessions/{id}",
+    tag = "access",
+    params(("id" = u64, Path, description = "The session")),
+    responses((status = 204, description = "It has ended"))
+)]
 pub(in crate::http) async fn end_session(
     State(app): State<App>,
     Caller(actor): Caller,

@@ -16,7 +16,19 @@ use crate::error::ApiError;
 /// Where a view link leads.
 const MONITOR: &str = "/monitor";
 
-/// `GET /view/{secret}`
+/// Opens a view link; for people.
+#[utoipa::path(
+    get,
+    path = "/view/{secret}",
+    tag = "access",
+    params(("secret" = String, Path, description = "As the link has it")),
+    responses(
+        (status = 303, description = "On to the Monitor, read only", headers(("set-cookie" = String, description = "The link"))),
+        (status = 401, description = "The link does not open", body = String, content_type = "text/html"),
+        (status = 404, description = "The link cannot be read"),
+        (status = 429, description = "Too many wrong links from there", body = String, content_type = "text/html")
+    )
+)]
 pub(in crate::http) async fn open(State(app): State<App>, Peer(peer): Peer, Name(secret): Name) -> Response {
     match app.access.open_link(&secret, peer) {
         Ok(lasts) => {

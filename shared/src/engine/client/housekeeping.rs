@@ -1,5 +1,7 @@
 //! What a client does without a block: closing what is not used, keeping alive, asking who it is.
 
+use alloc::vec::Vec;
+
 use crate::config::Profile;
 use crate::wire::{ClassCode, Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
@@ -210,8 +212,7 @@ impl Client {
     /// Reads the device's status over the connection that was used least recently, or without one.
     fn keep_alive(&mut self, cx: &mut Context<'_>) {
         let path = Epath::object(ClassCode::Identity.0, 1).then(LogicalKind::Attribute, STATUS_ATTRIBUTE);
-        let request =
-            MessageRouterRequest::new(ServiceCode::GetAttributeSingle, path, alloc::vec::Vec::new());
+        let request = MessageRouterRequest::new(ServiceCode::GetAttributeSingle, path, Vec::new());
         let Ok(request) = request.map(|request| request.bytes()) else { return };
         let deadline = Some(cx.now + KEEP_ALIVE_TIME);
         let context = self.fresh_context();
