@@ -12,6 +12,7 @@ use crate::audit::Audit;
 use crate::blocks::Blocks;
 use crate::history::History;
 use crate::http::AllowedHosts;
+use crate::listen::secure_url;
 use crate::permit::Policy;
 use crate::settings::Settings;
 use crate::store::Store;
@@ -28,6 +29,8 @@ pub(crate) struct App {
     pub(crate) store: Store,
     /// Browsers are told to keep to HTTPS.
     pub(crate) hsts: bool,
+    /// Where the relay goes after set-up, if that is not here.
+    pub(crate) moves_to: Option<String>,
     /// What is served with beyond loopback.
     pub(crate) tls: Option<Tls>,
     /// What was configured.
@@ -66,6 +69,7 @@ impl App {
         Self {
             hosts: Arc::default(),
             hsts: false,
+            moves_to: None,
             tls,
             settings: Arc::new(settings),
             policy,
@@ -84,6 +88,8 @@ impl App {
     pub(crate) fn answering_at(&self, address: SocketAddr, is_tls: bool) -> Self {
         let allowed = AllowedHosts::new(address, is_tls, &self.settings.allow_hosts);
         let hsts = is_tls && self.settings.tls.as_ref().is_some_and(|tls| tls.hsts);
-        Self { hosts: Arc::new(allowed), hsts, ..self.clone() }
+        let listen = self.settings.listen;
+        let moves_to = (!listen.ip().is_loopback() && !is_tls).then(|| secure_url(listen));
+        Self { hosts: Arc::new(allowed), hsts, moves_to, ..self.clone() }
     }
 }

@@ -18,6 +18,7 @@ pub mod peers;
 pub mod process;
 pub mod relay;
 pub mod rest;
+pub mod secure;
 pub mod tools;
 pub mod tshark;
 pub mod viewer;

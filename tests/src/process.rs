@@ -59,6 +59,11 @@ impl Process {
         self.signal(Signal::INT);
     }
 
+    /// Asks it to read its files again, as `systemctl reload` does.
+    pub fn hang_up(&self) {
+        self.signal(Signal::HUP);
+    }
+
     /// Ends it without asking, as `kill -9` and a power failure do.
     pub fn kill(&self) {
         self.signal(Signal::KILL);

@@ -15,7 +15,7 @@ use tokio::sync::watch;
 
 use self::door::Door;
 pub(crate) use self::door::Listening;
-pub(crate) use self::names::{in_url, is_name, own as own_names};
+pub(crate) use self::names::{in_url, is_name, own as own_names, secure_url};
 pub(crate) use self::seats::Seats;
 use crate::error::RunError;
 use crate::settings::Settings;

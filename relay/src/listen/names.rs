@@ -1,6 +1,6 @@
 //! The names under which this machine can be called.
 
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
 /// Names and addresses for who listens on `address`: those of loopback always, beyond it the address itself (all of
 /// this machine for `0.0.0.0` and `[::]`) and the machine's name.
@@ -25,6 +25,16 @@ pub(crate) fn own(address: IpAddr) -> Vec<String> {
 /// A name or an address as it stands in a URL.
 pub(crate) fn in_url(name: &str) -> String {
     if name.parse::<Ipv6Addr>().is_ok() { format!("[{name}]") } else { name.to_owned() }
+}
+
+/// The URL of the relay where it is served with TLS, as far as that can be told beforehand.
+pub(crate) fn secure_url(listen: SocketAddr) -> String {
+    let address = Some(listen.ip()).filter(|ip| !ip.is_unspecified()).map(|ip| ip.to_string());
+    let name = address.or_else(host_name).unwrap_or_else(|| "localhost".to_owned());
+    match listen.port() {
+        0 | 443 => format!("https://{}/", in_url(&name)),
+        port => format!("https://{}:{port}/", in_url(&name)),
+    }
 }
 
 /// Such an address means another machine on each network, and has no place in a URL.
@@ -72,6 +82,14 @@ mod tests {
         let names = own("192.0.2.17".parse().unwrap());
         assert!(names.contains(&"192.0.2.17".to_owned()), "{names:?}");
         assert!(!own(Ipv4Addr::UNSPECIFIED.into()).contains(&"0.0.0.0".to_owned()));
+    }
+
+    #[test]
+    fn a_browser_is_told_where_to_go() {
+        let url = |listen: &str| secure_url(listen.parse().unwrap());
+        assert_eq!(url("192.0.2.17:8818"), "https://192.0.2.17:8818/");
+        assert_eq!(url("[2001:db8::7]:443"), "https://[2001:db8::7]/");
+        assert!(!url("0.0.0.0:8818").contains("0.0.0.0"));
     }
 
     #[test]

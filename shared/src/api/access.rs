@@ -88,7 +88,7 @@ pub struct SessionView {
     /// The caller, when signed in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub caller: Option<Caller>,
-    /// Lower-case hexadecimal SHA-256 of the certificate, when the relay answers over TLS.
+    /// SHA-256 of the certificate, as browsers show it (`A1:B2:…`), when the relay answers over TLS or will.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
     /// Where the relay will be found after set-up, when that is another address than now.

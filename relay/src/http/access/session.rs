@@ -13,6 +13,7 @@ use super::super::extract::{Json, Peer};
 use crate::access::{Known, SignedIn, no_cookies, session_cookie};
 use crate::app::App;
 use crate::error::ApiError;
+use crate::tls::Tls;
 use crate::wall_clock;
 
 /// Who the caller is; also for somebody who is not signed in.
@@ -123,7 +124,8 @@ fn view(app: &App, known: Option<&Known>) -> SessionView {
         None if *app.access.is_set_up().borrow() => SessionState::SignedOut,
         None => SessionState::SetUp,
     };
-    SessionView { state, caller, fingerprint: None, moves_to: None }
+    let fingerprint = app.tls.as_ref().map(Tls::fingerprint);
+    SessionView { state, caller, fingerprint, moves_to: app.moves_to.clone() }
 }
 
 fn caller(known: &Known) -> Option<CallerView> {
