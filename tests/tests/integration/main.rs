@@ -27,3 +27,4 @@ mod shutdown;
 mod slow_viewer;
 mod tls;
 mod websocket;
+mod who;
