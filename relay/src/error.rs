@@ -169,6 +169,12 @@ pub enum RunError {
          leave out [local] and make accounts"
     )]
     LocalForOthers(SocketAddr),
+    /// Names of tunnels, together with local access: who comes through a tunnel comes from this machine.
+    #[error(
+        "[local] lets everybody on this machine act without signing in, and whoever comes through a tunnel or a proxy comes \
+         from this machine: leave out allow_hosts, or leave out [local] and make accounts"
+    )]
+    LocalThroughTunnel,
     /// There is no certificate to serve with.
     #[error("{0}")]
     Tls(String),

@@ -98,6 +98,9 @@ async fn serve_with(
     if settings.local.is_some() && !settings.listen.ip().is_loopback() {
         return Err(RunError::LocalForOthers(settings.listen));
     }
+    if settings.local.is_some() && !settings.allow_hosts.is_empty() {
+        return Err(RunError::LocalThroughTunnel);
+    }
     let tls = listen::tls(&settings)?;
     let database = settings.database();
     let no_store = |error| match &database {

@@ -93,6 +93,19 @@ fn without_an_administrator_the_command_stays_where_others_cannot_reach_it() {
     stop(&mut child);
 }
 
+/// Whoever comes through a tunnel comes from this machine.
+#[test]
+fn local_access_is_refused_where_others_could_come_through() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().to_str().unwrap();
+    for more in [["--listen", "0.0.0.0:0"], ["--allow-host", "gateway.example"]] {
+        let arguments = [&["serve", "--local", "viewer", "--data", data], &more[..]].concat();
+        let output = cipdeck(&arguments).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(1) && stderr.contains("[local]"), "{more:?}: {stderr}");
+    }
+}
+
 #[test]
 fn an_unknown_key_in_the_configuration_is_named() {
     let folder = tempfile::tempdir().unwrap();

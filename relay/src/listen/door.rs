@@ -116,10 +116,6 @@ impl Reception {
         while let Some(accepted) = self.closing.run_until_cancelled(listener.accept()).await {
             match accepted {
                 Ok((stream, peer)) => {
-                    // An answer right behind news would wait 40 ms until the viewer has acknowledged the news.
-                    if let Err(error) = stream.set_nodelay(true) {
-                        tracing::debug!(client.address = %peer, %error, "small messages may be late");
-                    }
                     if let Some(seated) = seats.take(stream, peer.ip()) {
                         connections.spawn(self.clone().answer(seated, peer));
                     }

@@ -48,7 +48,8 @@ impl Seats {
     /// Gives a new connection its seat; without a free one it is closed.
     pub(super) fn take(&self, stream: TcpStream, address: IpAddr) -> Option<Seated> {
         let seat = self.seat(address)?;
-        // Status changes are small and should not wait for each other; a connection that is gone already shows later.
+        // An answer right behind news would wait 40 ms until the viewer has acknowledged the news. A connection that is
+        // gone already shows later.
         let _ = stream.set_nodelay(true);
         Some(Seated { stream, _seat: seat })
     }
