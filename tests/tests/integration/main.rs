@@ -23,7 +23,6 @@ mod persistence;
 mod reconnect;
 mod routes;
 mod scale;
-mod security_model;
 mod shutdown;
 mod slow_viewer;
 mod tls;
