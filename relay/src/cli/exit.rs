@@ -52,6 +52,12 @@ impl Exit {
     /// Error findings. What is to be said has been said.
     pub(crate) const FINDINGS: Self = Self { code: 2, message: None };
 
+    /// The number.
+    #[cfg(test)]
+    pub(crate) const fn code(&self) -> u8 {
+        self.code
+    }
+
     /// Says on stderr what is left to say.
     pub(crate) fn report(self) -> ExitCode {
         if let Some(message) = self.message {

@@ -104,6 +104,13 @@ impl Cli {
     }
 }
 
+/// What somebody types, for tests of the whole relay: the exit code.
+#[cfg(test)]
+pub(crate) async fn act(arguments: &[&str]) -> u8 {
+    let arguments = std::iter::once(&"cipdeck").chain(arguments);
+    Cli::try_parse_from(arguments).expect("arguments").execute().await.code()
+}
+
 /// Prints a line on stdout. A reader that has gone away is no error of ours.
 fn say(line: &str) {
     use std::io::Write;

@@ -21,7 +21,7 @@ use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 use crate::permit::Gate;
 use crate::runner::Clock;
 use crate::settings::Settings;
-use crate::{RunError, simulate};
+use crate::{RunError, cli, simulate};
 
 const PASSWORD: &str = "correct horse battery";
 
@@ -46,6 +46,8 @@ pub(super) struct Person {
     client: Client,
     address: SocketAddr,
     headers: Vec<(&'static str, String)>,
+    /// What a program has in a file.
+    token: Option<String>,
 }
 
 /// HTTP status and body.
@@ -100,8 +102,9 @@ impl Site {
         let new = json!({ "name": role.word(), "role": role, "days": 1 });
         let (status, body) = self.person(Role::Admin).ask("POST", "tokens", &new).await;
         assert_eq!(status, 201, "{body}");
-        let bearer = format!("Bearer {}", body["secret"].as_str().unwrap());
-        Person { headers: vec![("authorization", bearer)], ..Person::new(self.address) }
+        let token = body["secret"].as_str().unwrap().to_owned();
+        let bearer = format!("Bearer {token}");
+        Person { headers: vec![("authorization", bearer)], token: Some(token), ..Person::new(self.address) }
     }
 
     pub(super) async fn stop(self) {
@@ -112,7 +115,7 @@ impl Site {
 
 impl Person {
     pub(super) fn new(address: SocketAddr) -> Self {
-        Self { client: Client::new(), address, headers: Vec::new() }
+        Self { client: Client::new(), address, headers: Vec::new(), token: None }
     }
 
     pub(super) async fn ask(&self, method: &str, path: &str, body: &Value) -> Reply {
@@ -182,6 +185,19 @@ impl Person {
             }
         };
         tokio::time::timeout(PATIENCE, look).await.expect("the status in time")
+    }
+
+    /// What the command line makes of a block with this person's token: its exit code. People have none.
+    pub(super) async fn command_line(&self, block: &Value) -> Option<u8> {
+        let folder = TempDir::new().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path.to_str().unwrap().to_owned()
+        };
+        let (token, block) = (file("token", self.token.as_ref()?), file("block.json", &block.to_string()));
+        let relay = format!("http://{}", self.address);
+        Some(cli::act(&["--relay", &relay, "--token-file", &token, "run", &block, "--json"]).await)
     }
 
     pub(super) async fn watch(&self) -> Viewer {
