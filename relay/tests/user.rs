@@ -2,7 +2,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-#[allow(dead_code, reason = "every test takes what it needs")]
 mod common;
 
 use std::io::Write;

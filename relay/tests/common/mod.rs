@@ -1,5 +1,7 @@
 //! A relay in this process, and the smallest HTTP client that can ask it.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use std::net::SocketAddr;
 
 use cipdeck_relay::{RunError, Settings};
