@@ -20,6 +20,9 @@ pub(crate) const SESSION: &str = "__Host-cipdeck";
 /// The cookie of a view link. One of its own, so that opening a link signs nobody out.
 pub(crate) const VIEW: &str = "__Host-cipdeck-view";
 
+/// What tunnels and proxies add to what they pass on.
+const PASSED_ON: [&str; 5] = ["forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-real-ip"];
+
 /// Somebody who is known.
 #[derive(Clone, Debug)]
 pub(crate) struct Known {
@@ -55,9 +58,22 @@ impl Access {
         {
             return Ok(Some(known(&secret, actor)));
         }
-        let local = self.0.local.filter(|_| peer.is_loopback());
+        let local = self.0.local.filter(|_| peer.is_loopback() && is_direct(headers));
         Ok(local.map(|role| Known { actor: Actor::local(role, peer.to_string()), csrf: None }))
     }
+}
+
+/// Whether nobody passes on what somebody else has sent: a tunnel or a proxy on this machine calls from loopback, too.
+fn is_direct(headers: &HeaderMap) -> bool {
+    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok()).unwrap_or_default();
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if port.bytes().all(|byte| byte.is_ascii_digit()) => name,
+        _ => host,
+    };
+    let name = name.trim_matches(['[', ']']);
+    let is_here =
+        name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(|ip: IpAddr| ip.is_loopback());
+    is_here && !PASSED_ON.iter().any(|name| headers.contains_key(*name))
 }
 
 /// The cookie of a new session, as a header. The browser forgets it with its window, the relay at the latest after 12 h.

@@ -397,13 +397,28 @@ async fn local_access_is_for_this_machine_and_for_nobody_who_shows_something() {
         Some(Role::Engineer),
     )
     .await;
-    let nothing = HeaderMap::new();
+    let host = |host: &str| HeaderMap::from_iter([(header::HOST, host.parse().unwrap())]);
+    let nothing = host("127.0.0.1:8818");
     let known = access.known(&nothing, HERE).unwrap().unwrap();
     assert_eq!((known.actor.kind(), known.actor.role()), (ActorKind::Local, Some(Role::Engineer)));
     assert!(access.known(&nothing, "::ffff:127.0.0.1".parse().unwrap()).unwrap().is_some());
     assert!(access.known(&nothing, THERE).unwrap().is_none());
     assert!(access.known(&bearer("cdt_1_x"), HERE).is_err(), "a wrong token is not made better");
-    assert!(access.known(&session("left over"), HERE).unwrap().is_some(), "cookies know no ports");
+    let mut left_over = session("left over");
+    left_over.insert(header::HOST, "localhost:8818".parse().unwrap());
+    assert!(access.known(&left_over, HERE).unwrap().is_some(), "cookies know no ports");
+    // A tunnel that ends at this machine calls from loopback.
+    for local in ["localhost", "LOCALHOST:80", "[::1]:8818", "[::1]", "127.0.0.1"] {
+        assert!(access.known(&host(local), HERE).unwrap().is_some(), "{local}");
+    }
+    for elsewhere in ["deck.example.net", "localhost.example.net:8818", "192.0.2.17:8818", ""] {
+        assert!(access.known(&host(elsewhere), HERE).unwrap().is_none(), "{elsewhere}");
+    }
+    for added in ["x-forwarded-for", "forwarded", "via"] {
+        let mut headers = nothing.clone();
+        headers.insert(added, "192.0.2.1".parse().unwrap());
+        assert!(access.known(&headers, HERE).unwrap().is_none(), "{added}");
+    }
 }
 
 #[tokio::test]

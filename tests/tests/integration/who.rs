@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::time::Duration;
 
-use cipdeck_tests::PATIENCE;
+use cipdeck_tests::command::cipdeck;
 use cipdeck_tests::process::Process;
 use cipdeck_tests::rest::{Reply, Rest};
 use cipdeck_tests::tools;
 use cipdeck_tests::wait::within;
+use cipdeck_tests::{PATIENCE, block};
 use futures_util::StreamExt as _;
 use reqwest::{Method, RequestBuilder};
 use serde_json::{Value, json};
@@ -196,4 +197,32 @@ async fn no_secret_is_in_the_log_at_any_level_nor_in_any_file() {
             assert_eq!(around, None, "{secret} is in {name}");
         }
     }
+}
+
+#[tokio::test]
+async fn a_script_believes_the_certificate_that_the_relay_has_printed_and_no_other() {
+    let folder = TempDir::new().expect("a folder");
+    let config = folder.path().join("cipdeck.toml");
+    std::fs::write(&config, "listen = \"127.0.0.1:0\"\n[tls]\n").expect("a file");
+    let block = folder.path().join("block.json");
+    std::fs::write(&block, block::get("0,0", 1, 1, 7).to_string()).expect("a file");
+    let data = folder.path().join("data");
+    let path = |path: &Path| path.to_str().expect("a path in UTF-8").to_string();
+    let arguments = ["serve", "--config", &path(&config), "--data", &path(&data)];
+    let process = Process::start(&tools::cipdeck(), arguments);
+    let after = |prefix: &'static str| move |line: &str| Some(line.strip_prefix(prefix)?.to_string());
+    let address = process.line("where it listens", PATIENCE, after("cipdeck listens on https://")).await;
+    let fingerprint = process.line("its certificate", PATIENCE, after("certificate SHA-256 ")).await;
+    let url = format!("https://{address}");
+    let run = async |fingerprint: &[&str]| {
+        cipdeck(&[&["--relay", &url], fingerprint, &["run", &path(&block)]].concat()).await
+    };
+    let unknown = run(&[]).await;
+    assert_eq!(unknown.code, 4, "{unknown:?}");
+    assert!(unknown.stderr.contains("certificate"), "{unknown:?}");
+    let other = fingerprint.replace(&fingerprint[..2], "00");
+    let other = run(&["--fingerprint", &other]).await;
+    assert!(other.code == 4 && other.stderr.contains(&fingerprint), "{other:?}");
+    let right = run(&["--fingerprint", &fingerprint]).await;
+    assert!(right.code == 4 && right.stderr.contains("there is no administrator yet"), "{right:?}");
 }
