@@ -99,16 +99,35 @@ impl From<ApiError> for Problem {
     }
 }
 
+/// Why a request was not carried out, for the log. It goes with the response, and is not sent.
+#[derive(Clone, Debug)]
+pub(crate) struct Refusal {
+    /// The problem's stable name.
+    pub(crate) code: ProblemCode,
+    /// In words, where they are ours.
+    pub(crate) why: String,
+}
+
+impl ApiError {
+    /// What the log says of it. Nothing that was sent is repeated: people mistype secrets, and addresses can be some.
+    pub(crate) fn refusal(&self) -> Refusal {
+        let why = match self {
+            Self::Unreadable(_) => "it could not be read".to_owned(),
+            Self::NotFound(_) => "nothing is there".to_owned(),
+            error => error.to_string(),
+        };
+        Refusal { code: self.kind().1, why }
+    }
+}
+
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let status = self.kind().0;
+        let refusal = self.refusal();
         let retry_after = match &self {
             Self::TooMany { retry_after, .. } => Some(HeaderValue::from(retry_after.as_secs() + 1)),
             _ => None,
         };
-        if status.is_server_error() {
-            tracing::error!(error = %self, "a request failed");
-        }
         // A problem has string keys only, which is all that could fail.
         let body = serde_json::to_string(&Problem::from(self)).unwrap_or_default();
         let content_type = HeaderValue::from_static("application/problem+json");
@@ -118,6 +137,7 @@ impl IntoResponse for ApiError {
             let how = HeaderValue::from_static("Bearer realm=\"cipdeck\"");
             response.headers_mut().insert(header::WWW_AUTHENTICATE, how);
         }
+        response.extensions_mut().insert(refusal);
         if let Some(retry_after) = retry_after {
             response.headers_mut().insert(header::RETRY_AFTER, retry_after);
         }

@@ -20,6 +20,7 @@ mod history;
 mod http;
 mod hub;
 mod listen;
+mod metrics;
 mod permit;
 mod ritual;
 mod runner;
@@ -164,7 +165,7 @@ fn site(app: App) -> Site {
     Site {
         listen: app.settings.listen,
         tls: app.tls.clone(),
-        seats: Seats::new(limits.connections, limits.connections_per_client),
+        seats: Seats::new(limits.connections, limits.connections_per_client, app.policy.metrics.clone()),
         router: Box::new(move |address, is_tls| {
             app.policy.lists.listens_on(address);
             http::router(app.answering_at(address, is_tls))

@@ -36,6 +36,7 @@ use self::medium::{InMemory, OnDisk};
 pub(crate) use self::page::Filter;
 pub(crate) use self::record::{Event, Record};
 pub(crate) use self::verify::{verify_file, verify_folder};
+use crate::metrics::Metrics;
 
 /// Why something was not recorded. Nothing may be written to a device then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -59,6 +60,7 @@ pub(crate) enum AuditError {
 pub(crate) struct Audit(Arc<Handle>);
 
 struct Handle {
+    metrics: Metrics,
     shared: Arc<Shared>,
     stopped: Arc<AtomicBool>,
     keeper: Option<JoinHandle<()>>,
@@ -80,19 +82,30 @@ impl Audit {
             move || keeper::keep(&shared, &folder, || stopped.load(Ordering::Acquire))
         };
         let keeper = thread::Builder::new().name("audit".to_owned()).spawn(run).map_err(unusable)?;
-        Ok(Self(Arc::new(Handle { shared, stopped, keeper: Some(keeper) })))
+        Ok(Self(Arc::new(Handle { metrics: Metrics::default(), shared, stopped, keeper: Some(keeper) })))
     }
 
     fn in_memory() -> Self {
         let log = Log::new(Box::<InMemory>::default(), Head::NONE, true);
-        Self(Arc::new(Handle { shared: Shared::new(log, None), stopped: Arc::default(), keeper: None }))
+        Self(Arc::new(Handle {
+            metrics: Metrics::default(),
+            shared: Shared::new(log, None),
+            stopped: Arc::default(),
+            keeper: None,
+        }))
     }
 
     /// Records. Costs one small write; may be called under a lock.
     pub(crate) fn append(&self, record: &Record) -> Result<(), AuditError> {
+        self.0.metrics.event(record.event());
         let result = self.0.shared.log().append(record);
         self.0.shared.wake();
         result
+    }
+
+    /// The counters of the relay that this audit belongs to.
+    pub(crate) fn metrics(&self) -> &Metrics {
+        &self.0.metrics
     }
 
     /// May a write to a device be recorded, as far as is known?

@@ -124,6 +124,11 @@ impl Buffer {
         }
     }
 
+    /// How many runs wait.
+    pub(super) fn len(&self) -> usize {
+        lock(&self.waiting).runs.len()
+    }
+
     /// The thread ends when it has written everything.
     pub(super) fn close(&self) {
         lock(&self.waiting).closed = true;

@@ -148,6 +148,16 @@ impl History {
         HistoryHealth { recording, lost: file.shared.lost.load(Ordering::Relaxed) }
     }
 
+    /// How many runs wait to be written.
+    pub(crate) fn waiting(&self) -> usize {
+        self.0.file.as_ref().map_or(0, |file| file.buffer.len())
+    }
+
+    /// Whether runs should be kept at all.
+    pub(crate) fn is_on(&self) -> bool {
+        self.0.file.is_some()
+    }
+
     /// Returns when everything that was handed over has been written, or is known to be lost.
     pub(crate) async fn close(&self) {
         if let Some(file) = &self.0.file {

@@ -13,7 +13,9 @@ mod extract;
 mod guard;
 mod health;
 mod history;
+mod metrics;
 mod need;
+mod observe;
 mod targets;
 mod write;
 
@@ -49,6 +51,7 @@ pub(crate) fn router(app: App) -> Router {
         .layer(middleware::from_fn_with_state(app.clone(), need::check))
         .layer(middleware::from_fn_with_state(app.clone(), guard::check))
         .layer(middleware::map_response_with_state(app.clone(), secure))
+        .layer(middleware::from_fn_with_state(app.clone(), observe::observe))
         .with_state(app)
 }
 
@@ -56,6 +59,7 @@ pub(crate) fn router(app: App) -> Router {
 fn routes() -> OpenApiRouter<App> {
     let api = OpenApiRouter::new()
         .routes(routes!(health::show))
+        .routes(routes!(health::ready))
         .routes(routes!(describe::show))
         .routes(routes!(session::show, session::sign_in, session::sign_out))
         .routes(routes!(session::active))
@@ -97,7 +101,10 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(commands::cancel))
         .fallback(unknown);
     let described = describe::Relay::openapi();
-    OpenApiRouter::with_openapi(described).nest("/api/v1", api).routes(routes!(view::open))
+    OpenApiRouter::with_openapi(described)
+        .nest("/api/v1", api)
+        .routes(routes!(view::open))
+        .routes(routes!(metrics::show))
 }
 
 async fn unknown(method: Method, uri: Uri) -> ApiError {

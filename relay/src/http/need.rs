@@ -46,7 +46,9 @@ pub(crate) const NEEDS: &[(&str, &str, Need)] = &[
     ("GET", "/view/{secret}", Anyone),
     ("GET", "/api", Anyone),
     ("GET", "/api/{*rest}", Anyone),
+    ("GET", "/metrics", Look),
     ("GET", "/api/v1/health", Anyone),
+    ("GET", "/api/v1/ready", Anyone),
     ("GET", "/api/v1/openapi.json", Look),
     ("GET", "/api/v1/session", Anyone),
     ("POST", "/api/v1/session", Anyone),
@@ -156,35 +158,48 @@ pub(super) async fn check(State(app): State<App>, mut request: Request, next: Ne
         // Files of the page, which need nothing, and addresses that nothing is at.
         return next.run(request).await;
     };
-    match permitted(&app, &request, route.as_str()) {
-        Ok(known) => {
-            if let Some(known) = known {
-                request.extensions_mut().insert(known.actor.clone());
-                request.extensions_mut().insert(known);
-            }
-            next.run(request).await
-        }
-        Err(error) => error.into_response(),
+    let (need, known) = match known(&app, &request, route.as_str()) {
+        Ok(known) => known,
+        Err(error) => return error.into_response(),
+    };
+    let permitted = permitted(&app, &request, need, known.as_ref());
+    let actor = known.as_ref().map(|known| known.actor.clone());
+    if let Some(known) = known {
+        request.extensions_mut().insert(known.actor.clone());
+        request.extensions_mut().insert(known);
     }
+    let mut response = match permitted {
+        Ok(()) => next.run(request).await,
+        Err(error) => error.into_response(),
+    };
+    // For the log.
+    if let Some(actor) = actor {
+        response.extensions_mut().insert(actor);
+    }
+    response
 }
 
-fn permitted(app: &App, request: &Request, route: &str) -> Result<Option<Known>, ApiError> {
+/// What this entry point asks, and who calls.
+fn known(app: &App, request: &Request, route: &str) -> Result<(Need, Option<Known>), ApiError> {
     let (method, path) = (request.method(), request.uri().path());
     let need = Need::of(method.as_str(), route)
         .ok_or_else(|| ApiError::NotFound(format!("nothing takes {method} at {path}")))?;
-    let known = app.access.known(request.headers(), peer(request))?;
+    Ok((need, app.access.known(request.headers(), peer(request))?))
+}
+
+fn permitted(app: &App, request: &Request, need: Need, known: Option<&Known>) -> Result<(), ApiError> {
     if need != Anyone {
-        let actor = known.as_ref().map(|known| &known.actor).ok_or_else(|| signed_out(app))?;
+        let actor = known.map(|known| &known.actor).ok_or_else(|| signed_out(app))?;
         let role = actor.role().ok_or_else(|| signed_out(app))?;
         need.check(actor.kind(), role).map_err(|why| ApiError::NotPermitted(why.to_owned()))?;
     }
-    if !matches!(*method, Method::GET | Method::HEAD) {
-        from_our_page(request, known.as_ref())?;
-        if let Some(known) = &known {
+    if !matches!(*request.method(), Method::GET | Method::HEAD) {
+        from_our_page(request, known)?;
+        if let Some(known) = known {
             known.actor.touch();
         }
     }
-    Ok(known)
+    Ok(())
 }
 
 /// Where the request comes from.

@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
+use crate::metrics::Metrics;
+
 /// How often it is logged that connections are closed.
 const COMPLAINTS: Duration = Duration::from_mins(1);
 
@@ -23,6 +25,7 @@ struct Shared {
     total: usize,
     per_client: usize,
     taken: Mutex<Taken>,
+    metrics: Metrics,
 }
 
 #[derive(Debug, Default)]
@@ -41,8 +44,8 @@ struct Seat {
 
 impl Seats {
     /// So many connections in all, and from one client.
-    pub(crate) fn new(total: usize, per_client: usize) -> Self {
-        Self(Arc::new(Shared { total, per_client, taken: Mutex::default() }))
+    pub(crate) fn new(total: usize, per_client: usize, metrics: Metrics) -> Self {
+        Self(Arc::new(Shared { total, per_client, taken: Mutex::default(), metrics }))
     }
 
     /// Gives a new connection its seat; without a free one it is closed.
@@ -59,6 +62,7 @@ impl Seats {
         let mut taken = self.taken();
         let by_client = taken.by_client.get(&client).copied().unwrap_or_default();
         if taken.total >= self.0.total || by_client >= self.0.per_client {
+            self.0.metrics.unseated();
             let now = Instant::now();
             if taken.complained.is_none_or(|last| now - last >= COMPLAINTS) {
                 taken.complained = Some(now);
@@ -155,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_client_has_its_share_and_all_together_have_theirs() {
-        let seats = Seats::new(5, 2);
+        let seats = Seats::new(5, 2, Metrics::default());
         let ip = |last: u8| IpAddr::from([10, 0, 0, last]);
         let first = (seats.seat(ip(1)).unwrap(), seats.seat(ip(1)).unwrap());
         assert!(seats.seat(ip(1)).is_none());

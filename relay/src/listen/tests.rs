@@ -18,6 +18,7 @@ use tokio::time::Instant;
 use tokio_rustls::TlsConnector;
 
 use super::*;
+use crate::metrics::Metrics;
 use crate::settings::Limits;
 
 /// A relay's doors, in this process.
@@ -35,7 +36,7 @@ impl House {
         change(&mut settings);
         let tls = tls(&settings).unwrap();
         let limits = settings.limits;
-        let seats = Seats::new(limits.connections, limits.connections_per_client);
+        let seats = Seats::new(limits.connections, limits.connections_per_client, Metrics::default());
         let site = Site { listen: settings.listen, tls, seats, router: Box::new(|_, _| router()) };
         let listener = bind("127.0.0.1:0".parse().unwrap()).await.unwrap();
         let is_set_up = watch::Sender::new(false);

@@ -151,7 +151,9 @@ impl Grants {
         view: &BlockView,
         exchange: &Exchange,
     ) {
-        if let Some(record) = self.writing.remove(&(block, shot)) {
+        let write = self.writing.remove(&(block, shot));
+        policy.metrics.message(write.is_some(), view);
+        if let Some(record) = write {
             let status = &view.status;
             let record = record
                 .with("error_id", status.error_id)
@@ -216,6 +218,7 @@ impl Grant {
 
     /// A read that is denied is no event; a write that is denied is one.
     fn record_denied(&self, policy: &Policy, block: BlockId, revision: u64, order: &Order, denied: &Denied) {
+        policy.metrics.denied(denied);
         if let Some(record) = self.write_record(block, revision, order) {
             policy.note(&record(Event::WriteDenied).with("why", denied.to_string()));
         }

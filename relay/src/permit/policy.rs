@@ -18,6 +18,7 @@ use super::ticket::{Confirmed, GOOD_FOR, Offer, Tickets};
 use super::window::{NotOpened, Window};
 use crate::actor::Actor;
 use crate::audit::{Audit, Event, Record};
+use crate::metrics::Metrics;
 
 /// The rules of this relay.
 #[derive(Debug)]
@@ -28,6 +29,8 @@ pub(crate) struct Policy {
     pub(crate) read_only: ReadOnly,
     pub(super) rate: Rate,
     pub(crate) audit: Audit,
+    /// What is counted of all this.
+    pub(crate) metrics: Metrics,
     /// Changes whenever [`Self::write_state`] does.
     version: watch::Sender<u64>,
 }
@@ -44,6 +47,7 @@ impl Policy {
             tickets: Tickets::default(),
             read_only: ReadOnly::of(folder),
             rate: Rate::new(limit),
+            metrics: audit.metrics().clone(),
             audit,
             version: watch::Sender::new(0),
         }

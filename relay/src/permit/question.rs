@@ -214,3 +214,31 @@ pub(crate) enum Denied {
         limit: u32,
     },
 }
+
+impl Denied {
+    /// The word under which it is counted.
+    pub(crate) const fn word(&self) -> &'static str {
+        match self {
+            Self::Unknown => "unknown_block",
+            Self::NoPlan => "no_plan",
+            Self::Gone => "signed_out",
+            Self::OnlyLooks => "viewer",
+            Self::Target(_) => "target",
+            Self::Special(..) => "special_address",
+            Self::OutOfScope => "scope",
+            Self::ReadOnly => "read_only",
+            Self::NeverWrites(_) => "role",
+            Self::NotOnList(_) => "not_on_list",
+            Self::NoWindow => "no_window",
+            Self::NotConfirmed => "not_confirmed",
+            Self::Changed { .. } => "changed",
+            Self::OtherWindow => "other_window",
+            Self::NoTicket => "no_ticket",
+            Self::Used => "ticket_used",
+            Self::Late => "late",
+            Self::Twice => "twice",
+            Self::NoAudit => "no_audit",
+            Self::TooMany { .. } => "rate",
+        }
+    }
+}

@@ -15,6 +15,7 @@ use crate::actor::Actor;
 use crate::blocks::Blocks;
 use crate::error::ApiError;
 use crate::hub::{Cursor, Update};
+use crate::metrics::Metrics;
 use crate::permit::Policy;
 
 /// Least time between two messages with changes.
@@ -97,7 +98,7 @@ where
                 is_behind = false;
                 next = Instant::now() + PAUSE;
                 version.mark_unchanged();
-                viewer.update(&blocks).await
+                viewer.update(&blocks, &policy.metrics).await
             }
         };
     }
@@ -151,11 +152,14 @@ impl<S: Sink<Message> + Unpin> Viewer<S> {
     }
 
     /// What this viewer has not seen yet.
-    async fn update(&mut self, blocks: &Blocks) -> Result<(), End> {
+    async fn update(&mut self, blocks: &Blocks, metrics: &Metrics) -> Result<(), End> {
         let Some(update) = blocks.hub().update(&mut self.cursor) else { return Ok(()) };
         self.seq += 1;
         let seq = self.seq;
         let Update { is_snapshot, blocks, statuses, removed, targets, targets_removed } = update;
+        if is_snapshot && seq > 1 {
+            metrics.snapshot();
+        }
         let message = if is_snapshot {
             ServerMessage::Snapshot { seq, blocks, statuses, targets }
         } else {

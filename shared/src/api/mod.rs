@@ -24,7 +24,8 @@ pub use self::history::{
     HistoryState, HistoryTrend, HistoryValue,
 };
 pub use self::rest::{
-    Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, RunRequest, findings,
+    Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, Ready, RunRequest,
+    findings,
 };
 pub use self::status::{BlockStatus, LastSuccess, MAX_EDGES};
 pub use self::target::{ConnectionStatus, TargetStatus};

@@ -19,11 +19,23 @@ pub struct Health {
     pub status: String,
     /// The relay's version.
     pub version: String,
-    /// How many blocks are stored.
-    pub blocks: usize,
-    /// Whether runs are being kept.
-    #[serde(default)]
-    pub history: HistoryHealth,
+    /// How many blocks are stored; told to whoever may look.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blocks: Option<usize>,
+    /// Whether runs are being kept; told to whoever may look.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub history: Option<HistoryHealth>,
+}
+
+/// `GET /api/v1/ready`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Ready {
+    /// Everything works that messages need.
+    pub ready: bool,
+    /// What does not, and what that means; told to whoever may look.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trouble: Vec<String>,
 }
 
 /// `POST /api/v1/blocks/{id}/in`.

@@ -1,5 +1,6 @@
 //! `/view/{secret}`: a view link is opened.
 
+use axum::Extension;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
@@ -42,6 +43,7 @@ pub(in crate::http) async fn open(State(app): State<App>, Peer(peer): Peer, Name
 
 /// For people: whoever opens a link has no program that reads problems.
 fn refused(error: ApiError) -> Response {
+    let refusal = error.refusal();
     let Problem { detail, status, .. } = error.into();
     let status = StatusCode::from_u16(status).unwrap_or(StatusCode::UNAUTHORIZED);
     let page = format!(
@@ -49,7 +51,7 @@ fn refused(error: ApiError) -> Response {
          <meta name=\"viewport\" content=\"width=device-width\"><title>cipdeck</title>\
          <h1>This link does not open</h1><p>{detail}</p></html>"
     );
-    (status, Html(page)).into_response()
+    (status, Extension(refusal), Html(page)).into_response()
 }
 
 /// Scheme, name and port under which the caller has reached the relay. `Host` and `Origin` have been checked.
