@@ -37,9 +37,23 @@ pub fn time_of_day(at: &str) -> String {
 
 /// `2026-11-22 07:36:12`: date and time of day here of a time in RFC 3339.
 pub fn date_and_time(at: &str) -> String {
-    let date = Date::new(&at.into());
+    local(ms_of(at))
+}
+
+/// The same of a time in ms since 1970.
+pub fn local(ms: f64) -> String {
     // Sweden writes dates as the standard does.
-    date.to_locale_string("sv-SE", &JsValue::UNDEFINED).into()
+    Date::new(&ms.into()).to_locale_string("sv-SE", &JsValue::UNDEFINED).into()
+}
+
+/// ms since 1970 of a time in RFC 3339; no number for what is no time.
+pub fn ms_of(at: &str) -> f64 {
+    Date::parse(at)
+}
+
+/// So many ms from now as RFC 3339.
+pub fn utc(from_now_ms: f64) -> String {
+    Date::new(&(Date::now() + from_now_ms).into()).to_iso_string().into()
 }
 
 /// Calls once before the next picture is drawn.

@@ -29,8 +29,6 @@ pub struct WindowTableProps {
     pub ids: Rc<[DeckId]>,
     /// Height of every row in px; the style sheet has to agree.
     pub row_height: u32,
-    /// Number of columns.
-    pub columns: usize,
     /// The header cells.
     pub header: Html,
     /// One row: its `aria-rowindex`, and which entry.
@@ -73,10 +71,10 @@ pub fn WindowTable(props: &WindowTableProps) -> Html {
             set_height(&below, count - shown.end, *row_height);
         }
     });
-    let columns = props.columns.to_string();
+    // One cell, however many columns: a narrow window hides some of them.
     let spacer = |key: &'static str, node: NodeRef| {
         html! {
-            <tr {key} class="spacer" aria-hidden="true"><td colspan={columns.clone()}><div ref={node} /></td></tr>
+            <tr {key} class="spacer" aria-hidden="true"><td><div ref={node} /></td></tr>
         }
     };
     let rows = shown.clone().filter_map(|index| {

@@ -31,7 +31,6 @@ pub(crate) fn filled(key: &'static str, values: &[(&'static str, &dyn Display)])
 }
 
 /// A text whose key is put together at run time, or `None` where there is none.
-#[cfg_attr(not(test), expect(dead_code, reason = "for words of the relay"))]
 pub(crate) fn try_text(key: &str) -> Option<AttrValue> {
     OFFICE.get(key).map(AttrValue::Static)
 }

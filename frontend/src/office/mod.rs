@@ -8,29 +8,42 @@
 //! | [`kit`] | small components beside those of the workbench |
 //! | the others | its pages |
 
+mod allowed;
 pub mod api;
+mod audit;
 pub mod check;
 pub mod fetch;
 mod follow;
+mod history;
 mod i18n;
 pub mod kit;
 mod overview;
+mod passes;
 mod password;
+mod query;
 pub mod route;
+mod sessions;
 mod set_up;
 mod sign_in;
+mod users;
 mod writing;
 
 use cipdeck_shared::api::SessionState;
 use yew::prelude::*;
 
 use self::{
+    allowed::AllowedPage,
+    audit::AuditPage,
     follow::use_writing,
+    history::HistoryPage,
     i18n::tr,
     overview::OverviewPage,
+    passes::PassesPage,
     route::{Page, link, use_page},
+    sessions::SessionsPage,
     set_up::SetUpPage,
     sign_in::SignInPage,
+    users::UsersPage,
 };
 use crate::{
     access::{refused, who, write_banner},
@@ -71,7 +84,7 @@ pub fn Office() -> Html {
                 <li><a href="/">{ tr!("office.to_workbench") }</a></li>
                 <li><a href="/monitor">{ tr!("nav.monitor") }</a></li>
             </ul></nav>
-            { who(view.as_deref(), writing.state.read_only) }
+            { who(view.as_deref().filter(|_| page != Page::SignIn), writing.state.read_only) }
             <ThemeToggle />
         </header>
         { write_banner(&writing) }
@@ -108,7 +121,14 @@ fn entry(listed: Page, here: Page) -> Html {
 fn show(page: Page, writing: std::rc::Rc<crate::net::Writing>, ask_again: Callback<()>) -> Html {
     match page {
         Page::Overview => html! { <OverviewPage {writing} on_changed={ask_again} /> },
-        _ => not_found(),
+        Page::Users => html! { <UsersPage /> },
+        Page::Sessions => html! { <SessionsPage /> },
+        Page::Tokens => html! { <PassesPage key="tokens" links=false /> },
+        Page::ViewLinks => html! { <PassesPage key="links" links=true /> },
+        Page::Allowed => html! { <AllowedPage /> },
+        Page::Audit => html! { <AuditPage /> },
+        Page::History(block) => html! { <HistoryPage {block} /> },
+        Page::SignIn | Page::SetUp | Page::NotFound => not_found(),
     }
 }
 

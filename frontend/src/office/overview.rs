@@ -95,8 +95,10 @@ fn certificate(view: &SessionView) -> Html {
 /// The SHA-256 of the certificate, as browsers show it.
 pub(super) fn fingerprint(hex: Option<&str>) -> Html {
     let Some(hex) = hex else { return html! {} };
-    let pairs: Vec<_> =
-        hex.as_bytes().chunks(2).map(|pair| String::from_utf8_lossy(pair).to_ascii_uppercase()).collect();
+    // With or without colons.
+    let digits: Vec<_> = hex.chars().filter(char::is_ascii_hexdigit).collect();
+    let pairs: Vec<String> =
+        digits.chunks(2).map(|pair| pair.iter().collect::<String>().to_ascii_uppercase()).collect();
     html! {
         <p class="fingerprint">
             <span>{ tr!("certificate.fingerprint") }</span>

@@ -65,7 +65,7 @@ impl Entry {
             (Some(problem), _) => (Some(problem.clone()), "finding error", Some("alert")),
             (None, hint) => (hint.clone(), "hint", None),
         };
-        let said_id = format!("{}-note", self.id);
+        let said_id = format!("{}-said", self.id);
         html! {
             <div class="entry-line">
                 <label for={self.id}>{ self.label }</label>

@@ -91,11 +91,12 @@ fn sent_as(plan: &MessagePlan, profile: Profile) -> AttrValue {
 /// The frames of the block's last messages for Wireshark; only a relay keeps them.
 fn download(props: &ExchangeProps) -> Html {
     match props.subject.id {
-        DeckId::Stored(id) if props.subject.online && props.has_run => html! {
+        DeckId::Stored(id) if props.subject.online && props.has_run => html! { <>
+            <a class="download" href={format!("/office/history/{id}")} data-test="history">{ tr!("bytes.history") }</a>
             <a class="download" href={rest::capture(id)} download="" title={tr!("bytes.download_title")} data-test="pcapng">
                 { tr!("bytes.download") }
             </a>
-        },
+        </> },
         _ => html! {},
     }
 }
