@@ -30,10 +30,16 @@ impl Ended {
 
 /// Runs `cipdeck` with arguments to its end.
 pub async fn cipdeck(arguments: &[&str]) -> Ended {
-    let mut command = Command::new(tools::cipdeck());
+    program(&tools::cipdeck(), arguments).await
+}
+
+/// Runs a program with arguments to its end.
+pub async fn program(program: &Path, arguments: &[&str]) -> Ended {
+    let name = program.display();
+    let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).kill_on_drop(true);
-    let output = within(&format!("cipdeck {} ends", arguments.join(" ")), PATIENCE, command.output()).await;
-    let output = output.expect("cipdeck starts");
+    let output = within(&format!("{name} {} ends", arguments.join(" ")), PATIENCE, command.output()).await;
+    let output = output.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
     Ended {
         code: output.status.code().unwrap_or_else(|| panic!("an exit code: {output:?}")),
         stdout: String::from_utf8_lossy(&output.stdout).into_owned(),

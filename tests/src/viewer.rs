@@ -7,6 +7,7 @@ use futures_util::{SinkExt as _, StreamExt as _};
 use serde_json::{Value, json};
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
 use tokio_tungstenite::tungstenite::protocol::CloseFrame;
 use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 
@@ -36,8 +37,16 @@ pub struct Viewer {
 impl Viewer {
     /// Connects, and has seen `hello` and the first snapshot.
     pub async fn connect(address: impl std::fmt::Display) -> Self {
-        let url = format!("ws://{address}/api/v1/ws");
-        let (socket, _) = connect_async(url).await.expect("the relay takes a WebSocket");
+        Self::connect_with(address, &[]).await
+    }
+
+    /// Connects with more headers: a cookie, a token.
+    pub async fn connect_with(address: impl std::fmt::Display, headers: &[(&'static str, &str)]) -> Self {
+        let mut request = format!("ws://{address}/api/v1/ws").into_client_request().expect("an address");
+        for (name, value) in headers {
+            request.headers_mut().insert(*name, value.parse().expect("a value of a header"));
+        }
+        let (socket, _) = connect_async(request).await.expect("the relay takes a WebSocket");
         let mut viewer = Self {
             socket,
             hello: Value::Null,

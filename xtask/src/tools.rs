@@ -38,6 +38,7 @@ pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestToo
     let chromedriver = report.step("tool: Chromium and its driver", || browser(consent))?;
     let cpppo_python = report.step("tool: cpppo, a target that is not ours", || cpppo(consent))?;
     let tshark = report.step("tool: tshark, a reader of captures that is not ours", || tshark(consent))?;
+    report.step("tool: ip, openssl and curl, callers that are not ours", || callers(consent))?;
     Ok(TestTools { chromedriver, cpppo_python, tshark })
 }
 
@@ -103,6 +104,18 @@ fn tshark(consent: Consent) -> Result<PathBuf> {
     let version = read(program(&tshark).arg("--version"))?;
     println!("    {}", version.lines().next().unwrap_or_default());
     Ok(tshark)
+}
+
+/// What calls the relay from another network namespace, and over TLS.
+fn callers(consent: Consent) -> Result<()> {
+    for (tool, package) in [("ip", "iproute2"), ("openssl", "openssl"), ("curl", "curl")] {
+        if find(tool).is_none() && system::is_debian() {
+            system::install(consent, &[package], "A caller for the tests")?;
+        }
+        let found = find(tool).with_context(|| format!("{tool} is not on the PATH: install {package}"))?;
+        println!("    {}", found.display());
+    }
+    Ok(())
 }
 
 /// A Python environment of our own that holds cpppo.
