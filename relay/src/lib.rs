@@ -22,6 +22,7 @@ mod hub;
 mod listen;
 mod metrics;
 mod permit;
+mod private;
 mod ritual;
 mod runner;
 mod shutdown;

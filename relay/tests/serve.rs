@@ -93,6 +93,22 @@ fn without_an_administrator_the_command_stays_where_others_cannot_reach_it() {
     stop(&mut child);
 }
 
+/// Hashes of passwords and tokens are in the database, and the key of the certificate beside it.
+#[cfg(unix)]
+#[test]
+fn nobody_else_on_the_machine_reads_the_data() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("new/data");
+    let (mut child, _, _) = start(&["serve", "--listen", "0.0.0.0:0", "--data", data.to_str().unwrap()]);
+    let mode = |path: &std::path::Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o077;
+    for file in ["cipdeck.sqlite", "cipdeck.sqlite-wal", "history.sqlite", "audit.jsonl", "tls/key.pem", "."]
+    {
+        assert_eq!(mode(&data.join(file)), 0, "{file}");
+    }
+    stop(&mut child);
+}
+
 /// Whoever comes through a tunnel comes from this machine.
 #[test]
 fn local_access_is_refused_where_others_could_come_through() {

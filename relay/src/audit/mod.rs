@@ -37,6 +37,7 @@ pub(crate) use self::page::Filter;
 pub(crate) use self::record::{Event, Record};
 pub(crate) use self::verify::{verify_file, verify_folder};
 use crate::metrics::Metrics;
+use crate::private;
 
 /// Why something was not recorded. Nothing may be written to a device then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,7 +73,7 @@ impl Audit {
     pub(crate) fn open(folder: Option<&Path>) -> Result<Self, AuditError> {
         let Some(folder) = folder else { return Ok(Self::in_memory()) };
         let unusable = |error: std::io::Error| AuditError::Unusable(format!("{}: {error}", folder.display()));
-        fs::create_dir_all(folder).map_err(unusable)?;
+        private::folder(folder).map_err(unusable)?;
         let shared = Shared::new(open_log(folder).map_err(unusable)?, Some(folder.to_owned()));
         // Before the first write, so that a crash in the first second does not look like a lost head.
         keeper::take_care(&shared, folder);

@@ -5,6 +5,7 @@ use std::time::{Duration, SystemTime};
 
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
+use crate::private;
 use crate::store::{StoreError, migrate};
 use crate::wall_clock;
 
@@ -73,9 +74,7 @@ pub(super) fn is_corrupt(error: &StoreError) -> bool {
 }
 
 fn prepare(path: &Path) -> Result<Connection, StoreError> {
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(StoreError::Folder)?;
-    }
+    private::file(path).map_err(StoreError::Folder)?;
     let mut connection = Connection::open(path)?;
     connection.busy_timeout(PATIENCE)?;
     // Takes effect in a new file only.

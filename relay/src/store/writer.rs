@@ -7,6 +7,7 @@ use rusqlite::Connection;
 use tokio::sync::{mpsc, oneshot};
 
 use super::{StoreError, schema};
+use crate::private;
 
 /// Work that waits. More of it makes the askers wait, not the memory grow.
 const QUEUE: usize = 64;
@@ -79,9 +80,7 @@ impl Writer {
 fn open(path: Option<&Path>) -> Result<Connection, StoreError> {
     let mut connection = match path {
         Some(path) => {
-            if let Some(folder) = path.parent() {
-                std::fs::create_dir_all(folder).map_err(StoreError::Folder)?;
-            }
+            private::file(path).map_err(StoreError::Folder)?;
             Connection::open(path)?
         }
         None => Connection::open_in_memory()?,

@@ -9,6 +9,7 @@ use rcgen::{CertificateParams, DnType, ExtendedKeyUsagePurpose, KeyPair, KeyUsag
 use serde::{Deserialize, Serialize};
 
 use super::TlsError;
+use crate::private;
 
 pub(super) const CHAIN: &str = "cert.pem";
 pub(super) const KEY: &str = "key.pem";
@@ -56,7 +57,7 @@ pub(super) fn keep(folder: &Path, names: &[String], now: SystemTime) -> Result<(
         until: until.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs(),
     };
     let about = serde_json::to_vec(&about).unwrap_or_default();
-    fs::create_dir_all(folder).map_err(|source| TlsError::Unwritable { path: folder.to_owned(), source })?;
+    private::folder(folder).map_err(|source| TlsError::Unwritable { path: folder.to_owned(), source })?;
     for (name, content) in [(KEY, pem.key.as_bytes()), (CHAIN, pem.chain.as_bytes()), (ABOUT, &about)] {
         let path = folder.join(name);
         write(&path, content).map_err(|source| TlsError::Unwritable { path, source })?;
