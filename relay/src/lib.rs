@@ -12,6 +12,7 @@ pub mod settings;
 
 mod app;
 mod audit;
+mod backup;
 mod blocks;
 mod discover;
 mod draft;
@@ -21,6 +22,7 @@ mod http;
 mod hub;
 mod listen;
 mod metrics;
+mod owner;
 mod permit;
 mod private;
 mod ritual;

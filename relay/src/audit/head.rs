@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::line::Hash;
+use crate::owner;
 
 /// Its name in the data folder.
 pub(super) const HEAD: &str = "audit.head";
@@ -64,6 +65,8 @@ impl Head {
         file.write_all(&serde_json::to_vec(&stored)?)?;
         file.write_all(b"\n")?;
         file.sync_all()?;
+        // Written by a command of root, it must not be out of the relay's reach.
+        owner::give(&new, &fs::metadata(folder)?)?;
         fs::rename(new, folder.join(HEAD))
     }
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::wall_clock;
+use crate::{owner, wall_clock};
 
 /// The name of the records in the data folder.
 pub(crate) const FILE: &str = "audit.jsonl";
@@ -49,6 +49,7 @@ impl OnDisk {
     pub(super) fn open(folder: &Path, length: u64) -> io::Result<Self> {
         let path = folder.join(FILE);
         let file = open(&path)?;
+        owner::give(&path, &fs::metadata(folder)?)?;
         if file.metadata()?.len() != length {
             file.set_len(length)?;
         }

@@ -152,8 +152,6 @@ events! {
     BlockDeleted = "block_deleted",
     /// Another certificate is in use.
     CertificateReloaded = "certificate_reloaded",
-    /// The data folder was copied.
-    BackupMade = "backup_made",
     /// The records before this one are broken, and were set aside. Writes are stopped.
     ChainBroken = "chain_broken",
     /// A person with access to the machine has seen the break. Writes go on.

@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use tokio::time::Instant;
 
 use super::{Exit, say};
-use crate::audit;
 use crate::settings::{self, SettingsError};
+use crate::{audit, owner};
 
 /// How long a running relay has to take up an acceptance.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -98,7 +98,10 @@ impl Accept {
             Err(error) => return Exit::usage(&error),
         };
         match audit::accept(&folder, &account()) {
-            Ok(Some(what)) => say(&format!("accepted: {what}")),
+            Ok(Some(what)) => {
+                owner::hand_over(&folder);
+                say(&format!("accepted: {what}"));
+            }
             Ok(None) => return nothing_to_accept(&folder),
             Err(error) => return Exit::internal(&error),
         }

@@ -1,11 +1,13 @@
 //! Everything that a person types: `cipdeck serve`, and the commands that talk to a device from here.
 
 mod audit;
+mod backup;
 mod check;
 mod discover;
 mod exit;
 mod explain;
 mod once;
+mod read_only;
 mod remote;
 mod report;
 mod run;
@@ -65,6 +67,12 @@ enum Command {
     Audit(audit::Audit),
     /// The users of a relay that is stopped: for the first administrator, and for a lost one.
     User(user::User),
+    /// Stop all writes of a relay, or let them go on.
+    ReadOnly(read_only::Switch),
+    /// Copy a relay's data into one file; it may be running.
+    Backup(backup::Backup),
+    /// Go back to a backup.
+    Restore(backup::Restore),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
 }
@@ -99,6 +107,9 @@ impl Cli {
             Command::Discover(discover) => discover.execute().await,
             Command::Audit(audit) => audit.execute().await,
             Command::User(user) => user.execute().await,
+            Command::ReadOnly(switch) => switch.execute(),
+            Command::Backup(backup) => backup.execute(),
+            Command::Restore(restore) => restore.execute(),
             Command::Check(check) => check.execute(),
         }
     }

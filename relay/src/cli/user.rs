@@ -11,6 +11,7 @@ use crate::access::Access;
 use crate::actor::Actor;
 use crate::audit::Audit;
 use crate::error::ApiError;
+use crate::owner;
 use crate::settings::{self, Settings, SettingsError};
 use crate::store::{Store, StoreError};
 
@@ -110,6 +111,7 @@ impl User {
         let access = Access::open(store.clone(), audit, None).await.map_err(|error| unusable(&error))?;
         let result = self.command.run(&access).await;
         store.close().await;
+        owner::hand_over(&folder);
         result
     }
 }

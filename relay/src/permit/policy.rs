@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use cipdeck_shared::api::{WriteState, WriteTicket};
@@ -31,6 +32,8 @@ pub(crate) struct Policy {
     pub(crate) audit: Audit,
     /// What is counted of all this.
     pub(crate) metrics: Metrics,
+    /// The switch as the audit knows it: the file can be made and removed without us.
+    recorded_switch: AtomicBool,
     /// Changes whenever [`Self::write_state`] does.
     version: watch::Sender<u64>,
 }
@@ -45,6 +48,7 @@ impl Policy {
             lists: Lists::default(),
             window: Window::default(),
             tickets: Tickets::default(),
+            recorded_switch: AtomicBool::new(ReadOnly::of(folder).is_on()),
             read_only: ReadOnly::of(folder),
             rate: Rate::new(limit),
             metrics: audit.metrics().clone(),
@@ -94,7 +98,7 @@ impl Policy {
     /// Turns the switch on.
     pub(crate) fn stop_writing(&self, actor: &Actor) -> std::io::Result<()> {
         self.read_only.turn_on()?;
-        self.note(&record(Event::ReadOnlyOn, actor));
+        self.note_switch(true, actor.name(), actor.from());
         self.close_window(actor);
         self.changed();
         Ok(())
@@ -103,7 +107,7 @@ impl Policy {
     /// Turns the switch off: the caller has made sure that it is local access.
     pub(crate) fn write_again(&self, actor: &Actor) -> std::io::Result<()> {
         self.read_only.turn_off()?;
-        self.note(&record(Event::ReadOnlyOff, actor));
+        self.note_switch(false, actor.name(), actor.from());
         self.changed();
         Ok(())
     }
@@ -171,10 +175,20 @@ impl Policy {
                 );
             }
             let seen = self.seen();
+            // With `cipdeck read-only`, or by hand, at the relay's machine.
+            self.note_switch(seen.read_only, "local", "");
             if seen != last {
                 last = seen;
                 self.changed();
             }
+        }
+    }
+
+    /// Records the switch, if the audit does not know it yet.
+    fn note_switch(&self, is_on: bool, actor: &str, from: &str) {
+        if self.recorded_switch.swap(is_on, Ordering::Relaxed) != is_on {
+            let event = if is_on { Event::ReadOnlyOn } else { Event::ReadOnlyOff };
+            self.note(&Record::new(event, actor, from));
         }
     }
 

@@ -6,6 +6,7 @@ mod access;
 mod allow;
 mod blocks;
 mod error;
+mod lock;
 mod schema;
 mod writer;
 

@@ -13,14 +13,12 @@ const MIGRATIONS: &[&str] = &[
     include_str!("migrations/0003_access.sql"),
 ];
 
-/// How long a relay that is just ending may still hold the file.
+/// How long a backup may keep the database from what only one can do.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Settings of the connection, then everything that the file lacks.
 pub(super) fn prepare(connection: &mut Connection) -> Result<(), StoreError> {
-    // One relay at a time: a second one is refused instead of running the same blocks again.
     connection.busy_timeout(PATIENCE)?;
-    connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", true)?;
@@ -61,4 +59,29 @@ mod tests {
         migrate(&mut connection, &["CREATE TABLE a (x); CREATE TABLE a (x)"]).unwrap_err();
         migrate(&mut connection, &["CREATE TABLE a (x)"]).unwrap();
     }
+
+    #[tokio::test]
+    async fn what_any_earlier_version_has_stored_is_brought_up_to_date() {
+        for version in 1..MIGRATIONS.len() {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("cipdeck.sqlite");
+            let mut old = Connection::open(&path).unwrap();
+            migrate(&mut old, &MIGRATIONS[..version]).unwrap();
+            old.execute_batch(BLOCK_OF_VERSION_1).unwrap();
+            old.close().unwrap();
+            let store = crate::store::Store::open(Some(&path)).await.unwrap();
+            let blocks = store.load().await.unwrap();
+            assert_eq!(blocks.len(), 1, "from version {version}");
+            assert_eq!((blocks[0].block.id.0, blocks[0].block.revision, blocks[0].input), (7, 3, true));
+            assert_eq!(blocks[0].block.config.name, "drive-current");
+            assert!(store.users().await.unwrap().is_empty());
+            store.close().await;
+            let new = Connection::open(&path).unwrap();
+            let known: u32 = new.pragma_query_value(None, "user_version", |row| row.get(0)).unwrap();
+            assert_eq!(usize::try_from(known).unwrap(), MIGRATIONS.len());
+        }
+    }
+
+    /// As the first version has written it.
+    const BLOCK_OF_VERSION_1: &str = r#"INSERT INTO block (id, revision, config, input) VALUES (7, 3, '{"name":"drive-current","kind":"MSG_CIPGENERIC","Channel":"controller","Resume":true,"CtrlCfg":{"Cancel":false,"TriggerType":100,"StrMode":0},"AppCfg":{"Service":14,"Class":1,"Instance":1,"Attribute":7,"MemberCnt":0,"MemberId":[0,0,0]},"TargetCfg":{"Path":"4,192.168.1.100","CipConnMode":0,"UcmmTimeout":0,"ConnMsgTimeout":0,"ConnClose":false},"ReqData":"","ReqLength":0,"ResDataSize":490}', 1)"#;
 }

@@ -6,6 +6,7 @@ use std::thread;
 use rusqlite::Connection;
 use tokio::sync::{mpsc, oneshot};
 
+use super::lock::Lock;
 use super::{StoreError, schema};
 use crate::private;
 
@@ -27,8 +28,8 @@ impl Writer {
         let (sender, mut work) = mpsc::channel::<Work>(QUEUE);
         let (opened, is_open) = oneshot::channel();
         let run = move || {
-            let mut connection = match open(path.as_deref()) {
-                Ok(connection) => connection,
+            let (mut connection, lock) = match open(path.as_deref()) {
+                Ok(opened) => opened,
                 Err(error) => {
                     let _ = opened.send(Err(error));
                     return;
@@ -45,6 +46,7 @@ impl Writer {
             if let Err((_, error)) = connection.close() {
                 tracing::error!(%error, "the database was not closed properly");
             }
+            drop(lock);
             if let Some(closed) = closed {
                 let _ = closed.send(());
             }
@@ -77,7 +79,8 @@ impl Writer {
     }
 }
 
-fn open(path: Option<&Path>) -> Result<Connection, StoreError> {
+fn open(path: Option<&Path>) -> Result<(Connection, Option<Lock>), StoreError> {
+    let lock = path.and_then(Path::parent).map(Lock::take).transpose()?;
     let mut connection = match path {
         Some(path) => {
             private::file(path).map_err(StoreError::Folder)?;
@@ -86,5 +89,5 @@ fn open(path: Option<&Path>) -> Result<Connection, StoreError> {
         None => Connection::open_in_memory()?,
     };
     schema::prepare(&mut connection)?;
-    Ok(connection)
+    Ok((connection, lock))
 }
