@@ -44,9 +44,18 @@ impl Journey {
 
     /// Opens a browser with a profile of its own at an address.
     pub async fn open(&self, who: &'static str, url: &str) -> Browser {
+        self.open_browser(who, url, false).await
+    }
+
+    /// The same for a relay whose certificate nobody has signed.
+    pub async fn open_trusting(&self, who: &'static str, url: &str) -> Browser {
+        self.open_browser(who, url, true).await
+    }
+
+    async fn open_browser(&self, who: &'static str, url: &str, trusting: bool) -> Browser {
         let profile = TempDir::new().expect("a folder for the browser's profile");
         install_tls();
-        let driver = WebDriver::new(self.server.as_str(), capabilities(&profile)).await;
+        let driver = WebDriver::new(self.server.as_str(), capabilities(&profile, trusting)).await;
         let driver = driver.unwrap_or_else(|error| {
             panic!("Chromium does not start: {error}\n{}", self.chromedriver.output().join("\n"))
         });
@@ -60,7 +69,7 @@ impl Journey {
             clicks: 0,
             _profile: profile,
         };
-        browser.driver().goto(url).await.unwrap_or_else(|error| panic!("{url}: {error}"));
+        browser.go(url).await;
         browser
     }
 }
@@ -80,6 +89,11 @@ pub struct Browser {
 }
 
 impl Browser {
+    /// Goes to an address, as if it was typed.
+    pub async fn go(&self, url: &str) {
+        self.driver().goto(url).await.unwrap_or_else(|error| panic!("{url}: {error}"));
+    }
+
     /// Clicks the button, link, tab or switch with this name, once it can be clicked.
     pub async fn click(&mut self, name: &str) {
         self.click_at(&control(name), name).await;

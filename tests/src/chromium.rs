@@ -5,11 +5,13 @@ use thirtyfour::ChromeCapabilities;
 use thirtyfour::common::capabilities::firefox::LoggingPrefsLogLevel;
 use thirtyfour::prelude::*;
 
-/// A browser with a profile of its own, which keeps a log.
-pub(crate) fn capabilities(profile: &TempDir) -> ChromeCapabilities {
+/// A browser with a profile of its own, which keeps a log. `trusting`: it takes any certificate, such as one that a relay
+/// has made for itself.
+pub(crate) fn capabilities(profile: &TempDir, trusting: bool) -> ChromeCapabilities {
     let mut capabilities = DesiredCapabilities::chrome();
     let profile = format!("--user-data-dir={}", profile.path().display());
-    for argument in ARGUMENTS.into_iter().chain([profile.as_str()]) {
+    let trust = trusting.then_some("--ignore-certificate-errors");
+    for argument in ARGUMENTS.into_iter().chain([profile.as_str()]).chain(trust) {
         capabilities.add_arg(argument).expect("an argument is text");
     }
     capabilities.set_browser_log_level(LoggingPrefsLogLevel::All).expect("a level is text");

@@ -21,6 +21,7 @@ pub mod process;
 pub mod relay;
 pub mod rest;
 pub mod secure;
+pub mod shipped;
 pub mod tools;
 pub mod tshark;
 pub mod viewer;

@@ -8,6 +8,7 @@ mod editor;
 mod first_start;
 mod looks;
 mod monitor;
+mod office;
 mod reconnect;
 mod routes;
 mod write;
