@@ -448,3 +448,87 @@ async fn nothing_that_opens_is_in_the_database_or_the_audit() {
         }
     }
 }
+
+/// Reproducible noise.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self, below: usize) -> usize {
+        // xorshift64*
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        let number = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33;
+        usize::try_from(number).unwrap() % below
+    }
+
+    /// A text that differs from this one in one place, or in its length.
+    fn change(&mut self, text: &str) -> String {
+        let mut bytes = text.as_bytes().to_vec();
+        let at = self.next(bytes.len());
+        match self.next(4) {
+            0 => bytes.truncate(at),
+            1 => bytes.insert(at, b'a'),
+            2 => drop(bytes.remove(at)),
+            _ => bytes[at] = if bytes[at] == b'7' { b'1' } else { b'7' },
+        }
+        String::from_utf8(bytes).unwrap()
+    }
+
+    fn bytes(&mut self) -> Vec<u8> {
+        (0..self.next(64)).map(|_| u8::try_from(self.next(256)).unwrap()).collect()
+    }
+}
+
+#[tokio::test]
+async fn half_a_million_random_log_ins_open_nothing() {
+    let relay = Relay::start().await;
+    let anna = relay.sign_in("anna").await;
+    let new = NewToken { name: "t".to_owned(), role: Role::Viewer, scope: Vec::new(), days: 1 };
+    let token = relay.access.make_token(new, &relay.admin).await.unwrap().secret;
+    let link = NewViewLink { name: "l".to_owned(), hours: 1 };
+    let link = relay.access.make_link(link, &relay.admin).await.unwrap().secret;
+    let mut noise = Noise(20_261_122);
+    let mut tried = 0;
+    for number in 0..500_000_u32 {
+        // From many places at once.
+        let from = IpAddr::from((0xC000_0200 + number % 200).to_be_bytes());
+        let headers = match number % 6 {
+            0 => bearer(&noise.change(&token)),
+            1 => session(&noise.change(&anna.secret)),
+            2 => cookie("__Host-cipdeck-view", &noise.change(&link)),
+            3 => {
+                let mut headers = HeaderMap::new();
+                for name in [header::AUTHORIZATION, header::COOKIE] {
+                    if let Ok(value) = header::HeaderValue::from_bytes(&noise.bytes()) {
+                        headers.insert(name, value);
+                    }
+                }
+                headers
+            }
+            4 => {
+                assert!(serde_json::from_slice::<SignIn>(&noise.bytes()).is_err());
+                continue;
+            }
+            _ => {
+                let name = if noise.next(2) == 0 { "anna".to_owned() } else { noise.change("anna") };
+                let password = noise.change(PASSWORD);
+                match relay.access.sign_in(form(&name, &password), from).await {
+                    Err(ApiError::SignedOut(_)) => tried += 1,
+                    Err(ApiError::TooMany { .. }) => {}
+                    other => panic!("{name} {password}: {:?}", other.map(|signed_in| signed_in.actor)),
+                }
+                continue;
+            }
+        };
+        let known = relay.access.known(&headers, from);
+        assert!(!matches!(known, Ok(Some(_))), "{headers:?}");
+        assert!(relay.access.open_link(&noise.change(&link), from).is_err());
+    }
+    assert!(tried < 5_000, "the others had to wait: {tried}");
+    // Who was here before goes on, with what is right.
+    relay.sign_in("anna").await;
+    assert!(relay.knows(&session(&anna.secret)).is_some() && relay.knows(&bearer(&token)).is_some());
+    let records = relay.audit_text().lines().count();
+    assert!(records < 10_000, "nobody fills the disk with wrong attempts: {records}");
+}

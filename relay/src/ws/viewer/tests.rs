@@ -238,3 +238,47 @@ async fn a_viewer_that_reads_nothing_is_left_behind() {
     // Time passes by itself while everybody waits.
     page.serving.await.unwrap();
 }
+
+#[tokio::test]
+async fn a_hundred_thousand_random_frames_of_a_viewer_move_nothing() {
+    let page = Page::of(Role::Viewer).await;
+    let id = page.blocks.create(&Actor::local(Role::Engineer, ""), draft()).await.unwrap().id;
+    let Page { to, mut from, blocks, serving, .. } = page;
+    let heard = tokio::spawn(async move {
+        let mut refused = 0;
+        while let Some(frame) = from.recv().await {
+            let Message::Text(text) = frame else { panic!("closed: {frame:?}") };
+            assert!(!text.contains(r#""type":"answer""#) || text.contains(r#""problem""#), "{text}");
+            refused += usize::from(text.contains(r#""type":"answer""#));
+        }
+        refused
+    });
+    let commands = [
+        format!(r#"{{"type":"run","id":"c1","block":"{id}"}}"#),
+        format!(r#"{{"type":"in","id":"c2","block":"{id}","IN":true,"ticket":"0123"}}"#),
+        format!(r#"{{"type":"cancel","id":"c3","block":"{id}"}}"#),
+    ];
+    let mut state = 20_261_122_u64;
+    let mut noise = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(state >> 33).unwrap() % below
+    };
+    for _ in 0..100_000 {
+        let mut bytes = commands[noise(commands.len())].clone().into_bytes();
+        for _ in 0..noise(4) {
+            let at = noise(bytes.len());
+            bytes[at] = b" \"{}[]:,0aen\\\xff"[noise(14)];
+        }
+        bytes.truncate(1 + noise(2 * bytes.len()));
+        let frame = match String::from_utf8(bytes) {
+            Ok(text) => Message::Text(text.into()),
+            Err(error) => Message::Binary(error.into_bytes().into()),
+        };
+        to.send(Ok(frame)).await.unwrap();
+    }
+    drop(to);
+    serving.await.unwrap();
+    assert!(heard.await.unwrap() > 20_000, "whoever asks is told");
+    let status = blocks.status(id).unwrap();
+    assert_eq!((status.runs, status.input), (0, false));
+}
