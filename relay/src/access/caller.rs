@@ -3,6 +3,7 @@
 use std::net::IpAddr;
 
 use axum::http::{HeaderMap, header};
+use cipdeck_shared::api::ActorKind;
 use cookie::{Cookie, SameSite};
 
 use super::{Access, secret};
@@ -89,13 +90,12 @@ pub(crate) fn view_cookie(secret: &str, lasts: std::time::Duration) -> String {
     cookie.to_string()
 }
 
-/// Headers that make the browser forget both.
-pub(crate) fn no_cookies() -> [String; 2] {
-    [SESSION, VIEW].map(|name| {
-        let mut cookie = sealed(name, "");
-        cookie.set_max_age(cookie::time::Duration::ZERO);
-        cookie.to_string()
-    })
+/// The header that makes the browser forget what somebody of this kind came with. A tablet on which a person signs out
+/// shows its view again.
+pub(crate) fn no_cookie(kind: ActorKind) -> String {
+    let mut cookie = sealed(if kind == ActorKind::ViewLink { VIEW } else { SESSION }, "");
+    cookie.set_max_age(cookie::time::Duration::ZERO);
+    cookie.to_string()
 }
 
 fn sealed<'a>(name: &'a str, secret: &'a str) -> Cookie<'a> {

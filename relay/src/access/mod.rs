@@ -36,7 +36,7 @@ use crate::error::ApiError;
 use crate::store::{Store, StoreError};
 
 pub(crate) use self::caller::{
-    CSRF_HEADER, Known, SESSION as SESSION_COOKIE, VIEW as VIEW_COOKIE, no_cookies, session_cookie,
+    CSRF_HEADER, Known, SESSION as SESSION_COOKIE, VIEW as VIEW_COOKIE, no_cookie, session_cookie,
     view_cookie,
 };
 pub(crate) use self::passes::{MadeLink, MadeToken, PassKind};

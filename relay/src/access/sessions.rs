@@ -143,7 +143,10 @@ impl Access {
         let user = user.filter(|user| !user.stored.disabled && Some(&user.stored.password) == kept.as_ref());
         let mut stored = user.ok_or_else(wrong)?.stored;
         stored.last_sign_in = Some(wall_clock::now());
-        self.0.store.change_user(stored.clone()).await?;
+        // A full disk locks nobody out.
+        if let Err(error) = self.0.store.change_user(stored.clone()).await {
+            tracing::warn!(%error, "not stored when a user has signed in");
+        }
         lock(&self.0.users).put(stored);
         let signed_in = self.begin_session(&name, from)?;
         self.0.trail.note(Event::SignIn, &signed_in.actor, &[]);

@@ -3,14 +3,14 @@
 use axum::Json as Answer;
 use axum::extract::{Request, State};
 use axum::http::{HeaderValue, StatusCode, header};
-use axum::response::{AppendHeaders, IntoResponse};
+use axum::response::IntoResponse;
 use cipdeck_shared::api::{
     ActorKind, Caller as CallerView, PasswordChange, SessionState, SessionView, SetUp, SignIn,
 };
 
 use super::super::caller::Caller;
 use super::super::extract::{Json, Peer};
-use crate::access::{Known, SignedIn, no_cookies, session_cookie};
+use crate::access::{Known, SignedIn, no_cookie, session_cookie};
 use crate::app::App;
 use crate::error::ApiError;
 use crate::tls::Tls;
@@ -75,11 +75,12 @@ pub(in crate::http) async fn set_up(
     responses((status = 204, description = "Signed out"))
 )]
 pub(in crate::http) async fn sign_out(State(app): State<App>, caller: Option<Caller>) -> impl IntoResponse {
+    let mut kind = ActorKind::Person;
     if let Some(Caller(actor)) = caller {
         app.access.sign_out(&actor);
+        kind = actor.kind();
     }
-    let forget = no_cookies().map(|cookie| (header::SET_COOKIE, cookie));
-    (StatusCode::NO_CONTENT, AppendHeaders(forget))
+    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, no_cookie(kind))])
 }
 
 /// Somebody is there: the session is not locked for being idle.
