@@ -1,5 +1,7 @@
 //! Health, readiness and metrics: what a stranger hears, and what whoever may look hears.
 
+#![expect(clippy::unwrap_used, reason = "a test ends where it fails")]
+
 mod common;
 
 use cipdeck_relay::Settings;
