@@ -1,6 +1,7 @@
 //! Integration tests of the relay and the command line against real sockets. One binary, because each would link
 //! the whole relay again.
 
+mod audit;
 mod bad_target;
 mod blocks;
 mod capture;
