@@ -110,7 +110,6 @@ impl Audit {
     }
 
     /// May a write to a device be recorded, as far as is known?
-    #[allow(dead_code, reason = "asked by what permits writes")]
     pub(crate) fn is_writable(&self) -> bool {
         self.0.shared.log().trouble().is_none()
     }

@@ -37,7 +37,6 @@ impl Record {
 
     /// A member that may be unknown, and is left out then.
     #[must_use]
-    #[allow(dead_code, reason = "for the modules that come")]
     pub(crate) fn with_some(self, key: &str, value: Option<impl Into<Value>>) -> Self {
         match value {
             Some(value) => self.with(key, value),
@@ -75,7 +74,6 @@ macro_rules! events {
     ($($(#[$doc:meta])* $name:ident = $word:literal,)*) => {
         /// What has happened.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[allow(dead_code, reason = "the modules that record them come one after the other")]
         pub(crate) enum Event {
             $($(#[$doc])* $name,)*
         }

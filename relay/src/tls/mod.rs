@@ -112,12 +112,6 @@ impl Tls {
         self.current().certificate.fingerprint.clone()
     }
 
-    /// Nobody else vouches for it: people compare the fingerprint.
-    #[allow(dead_code, reason = "the page says so")]
-    pub(crate) fn is_self_signed(&self) -> bool {
-        !matches!(self.0.source, Source::Files { .. })
-    }
-
     /// What the next connection is accepted with.
     pub(crate) fn config(&self) -> Arc<ServerConfig> {
         Arc::clone(&self.current().certificate.config)
