@@ -6,11 +6,10 @@ use std::{
 };
 
 use anyhow::{Context, Result, bail};
-use flate2::{Compression, write::GzEncoder};
 
 use crate::{
     frontend::{self, Profile},
-    page::{DOCUMENTS, Document},
+    page::{self, DOCUMENTS, Document},
     process::{cargo, run},
     report::Report,
     toolchain::{self, Preference},
@@ -35,7 +34,7 @@ fn measure(page: &Path) -> Result<()> {
     for document in DOCUMENTS {
         let mut total = 0;
         for (name, content) in loaded(page, document)? {
-            let zipped = gzipped(&content)?;
+            let zipped = page::gzipped(&content)?.len();
             total += zipped;
             println!("    {:>7} kB {:>7} kB gz  {name}", content.len().div_ceil(1000), zipped.div_ceil(1000));
         }
@@ -84,13 +83,6 @@ fn snippets(folder: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The length after gzip, as a server sends it.
-fn gzipped(content: &[u8]) -> Result<usize> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    std::io::Write::write_all(&mut encoder, content)?;
-    Ok(encoder.finish()?.len())
 }
 
 fn copy() -> Result<PathBuf> {

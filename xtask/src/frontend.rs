@@ -70,6 +70,9 @@ fn lay_down(compiled: &Path, profile: Profile) -> Result<()> {
     for (document, module) in DOCUMENTS.into_iter().zip(modules) {
         page::assemble(&mut files, document, &sources, bind(document, module, profile)?)?;
     }
+    if profile == Profile::Shipped {
+        page::zip(&mut files)?;
+    }
     page::write(&dist, &files)?;
     fs::write(&stamp, state).context("cannot write the page's stamp")
 }

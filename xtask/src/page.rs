@@ -4,11 +4,12 @@ use std::{
     collections::BTreeMap,
     fs,
     hash::{DefaultHasher, Hash, Hasher},
-    io::ErrorKind,
+    io::{ErrorKind, Write},
     path::Path,
 };
 
 use anyhow::{Context, Result, bail};
+use flate2::{Compression, write::GzEncoder};
 
 use crate::squeeze;
 
@@ -113,6 +114,25 @@ pub(crate) fn assemble(files: &mut Files, document: Document, sources: &Sources,
     )?;
     files.insert(document.index.to_owned(), index.into_bytes());
     Ok(())
+}
+
+/// Adds a gzipped copy of each file that a browser loads: the relay sends it as it is.
+pub(crate) fn zip(files: &mut Files) -> Result<()> {
+    let mut zipped = Files::new();
+    for (name, content) in &*files {
+        if Path::new(name).extension().is_some_and(|kind| kind == "wasm" || kind == "js" || kind == "css") {
+            zipped.insert(format!("{name}.gz"), gzipped(content)?);
+        }
+    }
+    files.extend(zipped);
+    Ok(())
+}
+
+/// As small as gzip makes it.
+pub(crate) fn gzipped(content: &[u8]) -> Result<Vec<u8>> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(content)?;
+    Ok(encoder.finish()?)
 }
 
 /// Makes the folder hold exactly these files, without touching one that has its content already.
@@ -253,6 +273,16 @@ mod tests {
         assert_eq!(changed.len(), 2);
         let [page, office] = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
         assert_eq!((page, office), (false, true));
+    }
+
+    #[test]
+    fn what_is_shipped_is_there_gzipped_as_well() {
+        let mut files = assembled(BOOT, b"one").unwrap();
+        let before = files.len();
+        zip(&mut files).unwrap();
+        let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with(".gz")).collect();
+        assert_eq!(zipped.len(), before - 3, "all but the documents and the icon");
+        assert!(zipped.iter().all(|(_, content)| content.starts_with(&[0x1F, 0x8B])));
     }
 
     #[test]

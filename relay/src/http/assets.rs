@@ -1,6 +1,6 @@
 //! The page, embedded in the binary.
 
-use axum::http::{HeaderValue, Method, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, Uri, header};
 use axum::response::{Html, IntoResponse, Response};
 use rust_embed::RustEmbed;
 
@@ -12,13 +12,19 @@ use crate::error::ApiError;
 struct Page;
 
 /// A file of the page; for every address without a file ending one of the two documents, which know their own routes.
-pub(crate) async fn show(method: Method, uri: Uri) -> Response {
+pub(crate) async fn show(method: Method, uri: Uri, headers: HeaderMap) -> Response {
     let path = uri.path().trim_start_matches('/');
     if !matches!(method, Method::GET | Method::HEAD) {
         return ApiError::NotFound(format!("nothing takes {method} at /{path}")).into_response();
     }
     let document = document(path);
     let file = document.unwrap_or(path);
+    let zipped = takes_gzip(&headers).then(|| Page::get(&format!("{file}.gz"))).flatten();
+    if let Some(content) = zipped {
+        let mut response = serve(file, content.data.into_owned());
+        response.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+        return response;
+    }
     match Page::get(file) {
         Some(content) => serve(file, content.data.into_owned()),
         None if document.is_some() => not_built().into_response(),
@@ -45,11 +51,23 @@ fn serve(path: &str, content: Vec<u8>) -> Response {
     let cache = if is_hashed(path) { "public, max-age=31536000, immutable" } else { "no-cache" };
     let content_type = HeaderValue::from_str(&content_type)
         .unwrap_or_else(|_| HeaderValue::from_static("application/octet-stream"));
-    (
-        [(header::CONTENT_TYPE, content_type), (header::CACHE_CONTROL, HeaderValue::from_static(cache))],
-        content,
-    )
-        .into_response()
+    let headers = [
+        (header::CONTENT_TYPE, content_type),
+        (header::CACHE_CONTROL, HeaderValue::from_static(cache)),
+        // What is shipped is there gzipped as well: these are files, the same for everybody.
+        (header::VARY, HeaderValue::from_static("accept-encoding")),
+    ];
+    (headers, content).into_response()
+}
+
+/// Whether the caller can read gzip: named, and not ruled out by `q=0`.
+fn takes_gzip(headers: &HeaderMap) -> bool {
+    let named = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
+    named.flat_map(|value| value.split(',')).any(|coding| {
+        let (name, weight) = coding.split_once(';').unwrap_or((coding, "q=1"));
+        let weight = weight.trim().strip_prefix("q=").and_then(|weight| weight.parse::<f32>().ok());
+        name.trim().eq_ignore_ascii_case("gzip") && weight.is_none_or(|weight| weight > 0.0)
+    })
 }
 
 /// A name that changes with the content: `page-0123456789abcdef.wasm`.
@@ -82,6 +100,20 @@ mod tests {
         for path in ["icon.svg", "office/page.js", "snippets/gloo-0123/inline0.js"] {
             assert_eq!(document(path), None, "{path}");
         }
+    }
+
+    #[test]
+    fn gzip_goes_to_whom_it_is_named_by() {
+        let takes = |value: &'static str| {
+            takes_gzip(&HeaderMap::from_iter([(header::ACCEPT_ENCODING, HeaderValue::from_static(value))]))
+        };
+        for value in ["gzip", "gzip, deflate, br, zstd", "br;q=1.0, GZIP;q=0.5"] {
+            assert!(takes(value), "{value}");
+        }
+        for value in ["", "identity", "br", "gzip;q=0", "xgzip"] {
+            assert!(!takes(value), "{value}");
+        }
+        assert!(!takes_gzip(&HeaderMap::new()));
     }
 
     #[test]

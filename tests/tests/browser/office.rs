@@ -189,8 +189,9 @@ async fn is_locked_out(admin: &mut Browser, tablet: &mut Browser) {
 async fn leaves_a_trail(admin: &mut Browser) {
     admin.click("Audit").await;
     admin.see("The chain has been read from its beginning, and holds.", PATIENCE).await;
-    for event in ["Write sent", "Write answered", "Write refused", "Token or link revoked"] {
-        admin.see(event, PATIENCE).await;
+    let events = ["write_requested", "write_permitted", "write_ended", "window_closed", "token_revoked"];
+    for event in events {
+        admin.find(event, &format!("//tr[@data-event='{event}']"), PATIENCE).await;
     }
     admin.shot("audit").await;
     admin.click("History").await;

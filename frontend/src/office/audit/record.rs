@@ -51,4 +51,4 @@ fn member((name, value): (&String, &Value)) -> Html {
 const BAD: [&str; 5] = ["write_denied", "sign_in_failed", "chain_broken", "audit_resumed", "read_only_on"];
 
 /// Members that are hexadecimal text.
-const BYTES: [&str; 4] = ["request", "reply", "old", "new"];
+const BYTES: [&str; 5] = ["request", "reply", "old", "new", "read_back"];

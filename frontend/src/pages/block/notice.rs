@@ -49,7 +49,7 @@ pub(crate) fn words(problem: &Problem) -> String {
     match (try_text(&format!("problem.code_{code}")), &problem.code) {
         (Some(words), ProblemCode::Findings | ProblemCode::NotFound) => words,
         (Some(words), _) if problem.detail.is_empty() => words,
-        (Some(words), _) => format!("{words} {}", problem.detail),
+        (Some(words), _) => format!("{}: {}", words.trim_end_matches('.'), problem.detail),
         (None, _) => format!("{}: {}", problem.title, problem.detail),
     }
 }
