@@ -11,6 +11,9 @@ use tokio::net::TcpListener;
 #[tokio::test]
 async fn five_slow_targets_hold_four_buffers_and_the_fifth_waits() {
     let relay = Relay::start().await;
+    // First, because it may have to wait for its turn: the messages wait for ten seconds only.
+    let journey = Journey::start("connections_five_targets").await;
+    let mut user = journey.open("user", &relay.page()).await;
     let mut targets = Vec::new();
     for number in 1..=5 {
         let target =
@@ -18,8 +21,6 @@ async fn five_slow_targets_hold_four_buffers_and_the_fifth_waits() {
         trigger(&relay, &format!("tank-{number}"), &target.path()).await;
         targets.push(target);
     }
-    let journey = Journey::start("connections_five_targets").await;
-    let mut user = journey.open("user", &relay.page()).await;
     user.click("Connections").await;
     user.see("4 of 4 buffers held, 1 waiting", PATIENCE).await;
     assert_eq!(count(&user, &format!("{}[@data-held='true']", part("buffer"))).await, 4);
@@ -46,10 +47,11 @@ async fn five_slow_targets_hold_four_buffers_and_the_fifth_waits() {
 #[tokio::test]
 async fn a_second_message_to_a_busy_target_says_what_it_waits_for() {
     let relay = Relay::start().await;
-    let target = FakePlc::start(messages(|request| vec![Act::Hold, Act::Send(request.success(&[1]))])).await;
-    trigger(&relay, "tank-level", &target.path()).await;
+    // First, because it may have to wait for its turn: the messages wait for ten seconds only.
     let journey = Journey::start("connections_busy_target").await;
     let mut user = journey.open("user", &relay.page()).await;
+    let target = FakePlc::start(messages(|request| vec![Act::Hold, Act::Send(request.success(&[1]))])).await;
+    trigger(&relay, "tank-level", &target.path()).await;
     user.click("Connections").await;
     user.see("sent, waits for the reply", PATIENCE).await;
     trigger(&relay, "tank-name", &target.path()).await;
