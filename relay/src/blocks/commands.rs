@@ -107,7 +107,8 @@ impl Blocks {
         ticket: Option<&str>,
     ) -> Result<BlockStatus, ApiError> {
         let resumes = self.block(id)?.config.resume;
-        let order = Some(self.order(actor, id, ticket)?);
+        // To stop takes no ticket: one that is not good any more must keep nobody from it.
+        let order = Some(self.order(actor, id, ticket.filter(|_| input))?);
         if resumes {
             self.edit(|inner| async move {
                 inner.runner.set_in(id, input, order)?;

@@ -98,7 +98,11 @@ pub(super) async fn set_read_only(
 ) -> Result<Answer<ReadOnly>, ApiError> {
     let failed = |error: std::io::Error| ApiError::Internal(format!("the switch cannot be set: {error}"));
     if wanted.read_only {
-        app.policy.stop_writing(&actor).map_err(failed)?;
+        app.policy.stop_writing(&actor).map_err(|error| {
+            ApiError::Internal(format!(
+                "writing is stopped, but only until the relay ends: the switch cannot be kept: {error}"
+            ))
+        })?;
     } else if actor.kind() == ActorKind::Local {
         app.policy.write_again(&actor).map_err(failed)?;
     } else {

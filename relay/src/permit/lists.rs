@@ -57,6 +57,7 @@ impl TryFrom<&NewAllowedWrite> for WriteRule {
 impl WriteRule {
     fn covers(&self, sending: &Sending, effect: &Effect) -> bool {
         sending.is_covered(effect, &self.target)
+            && !effect.carries()
             && effect.service.0 == self.service
             && effect.class == Some(self.class)
             && (self.instance.is_none() || effect.instance == self.instance)
@@ -177,8 +178,11 @@ impl Lists {
         if kept.is_empty() {
             return Err(refused);
         }
-        // Who was first is right: two attempts may resolve at the same time.
-        Ok(lists.pinned.entry(name.to_ascii_lowercase()).or_insert(kept).clone())
+        // Who was first is right: two attempts may resolve at the same time. What was pinned for one port may not be
+        // reached at another.
+        let mut pinned = lists.pinned.entry(name.to_ascii_lowercase()).or_insert(kept).clone();
+        pinned.retain(|address| lists.admit((*address, port).into()).is_ok());
+        if pinned.is_empty() { Err(refused) } else { Ok(pinned) }
     }
 
     fn change<T>(&self, change: impl FnOnce(&mut Inner) -> T) -> T {

@@ -74,8 +74,10 @@ fn permit_write(
     }
     match (question.shot, question.earlier) {
         (Some(shot), Some(earlier)) if shot != earlier && !question.repeats => return Err(Denied::Twice),
-        (Some(shot), Some(earlier)) if shot == earlier => {}
-        (_, None) if now >= confirmed.deadline => return Err(Denied::Late),
+        // Also when it is sent again on another connection. What repeats was in time once.
+        (_, earlier) if now >= confirmed.deadline && (earlier.is_none() || !question.repeats) => {
+            return Err(Denied::Late);
+        }
         _ => {}
     }
     policy.audit.is_writable().then_some(()).ok_or(Denied::NoAudit)

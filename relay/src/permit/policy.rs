@@ -95,13 +95,13 @@ impl Policy {
         }
     }
 
-    /// Turns the switch on.
+    /// Turns the switch on. Writing is stopped in any case; an error says that only until the relay ends.
     pub(crate) fn stop_writing(&self, actor: &Actor) -> std::io::Result<()> {
-        self.read_only.turn_on()?;
+        let kept = self.read_only.turn_on();
         self.note_switch(true, actor.name(), actor.from());
         self.close_window(actor);
         self.changed();
-        Ok(())
+        kept
     }
 
     /// Turns the switch off: the caller has made sure that it is local access.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cipdeck_shared::api::Role;
-use cipdeck_shared::config::{Profile, Target};
+use cipdeck_shared::config::Target;
 use cipdeck_shared::plan::{Effect, MessagePlan, TriggerType};
 use cipdeck_shared::table::Access;
 use cipdeck_shared::wire::{Epath, Segment};
@@ -48,8 +48,10 @@ pub(crate) struct Sending {
 
 impl From<&MessagePlan> for Sending {
     fn from(plan: &MessagePlan) -> Self {
-        // The route as it was typed: a kind of device may need less of it.
-        let own = plan.routed(Profile::Generic).route();
+        // Where it goes for the kind of device that the block names, which may leave out a hop: without this, naming a
+        // kind would be a way to a device that only something behind it is allowed of. Otherwise as it was typed: what
+        // is left out then is what the device itself says that it is.
+        let own = plan.routed(plan.profile()).route();
         let mut routes = vec![own.clone()];
         for effect in plan.effects() {
             let route = own.clone().join(&effect.route);

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(crate) struct ReadOnly {
     /// `None` keeps the switch in memory.
     marker: Option<PathBuf>,
+    /// On, and no file says so.
     fallback: AtomicBool,
 }
 
@@ -30,13 +31,19 @@ impl ReadOnly {
             || self.marker.as_ref().is_some_and(|marker| marker.try_exists().unwrap_or(true))
     }
 
-    /// Turns it on. There is no way back from here.
+    /// Turns it on. There is no way back from here. An error says that it is on only until the relay ends.
     pub(crate) fn turn_on(&self) -> io::Result<()> {
-        let Some(marker) = &self.marker else {
-            self.fallback.store(true, Ordering::Relaxed);
-            return Ok(());
-        };
-        std::fs::write(marker, TEXT)
+        // In memory first: a disk that takes nothing must not keep anybody from stopping.
+        self.fallback.store(true, Ordering::Relaxed);
+        let Some(marker) = &self.marker else { return Ok(()) };
+        match std::fs::write(marker, TEXT) {
+            Err(error) if !marker.try_exists().unwrap_or(false) => Err(error),
+            // The file alone decides, so that whoever is at the machine can remove it.
+            _ => {
+                self.fallback.store(false, Ordering::Relaxed);
+                Ok(())
+            }
+        }
     }
 
     /// Turns it off: for local access only.

@@ -2,7 +2,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use cipdeck_shared::api::{NewAllowedTarget, NewAllowedWrite};
-use cipdeck_shared::config::{BlockId, MsgCipGeneric, Target};
+use cipdeck_shared::config::{BlockId, MsgCipGeneric, Profile, Target};
 use cipdeck_shared::plan::MessagePlan;
 use tokio::time::{Instant, advance};
 
@@ -185,6 +185,57 @@ async fn a_name_stands_for_the_addresses_that_it_had_first_and_never_for_this_ma
 }
 
 #[tokio::test]
+async fn what_a_name_stands_for_at_one_port_may_be_the_relay_at_another() {
+    let lists = policy(&["plc.local:*"]).lists;
+    lists.listens_on("10.0.0.5:8818".parse().unwrap());
+    let both = || vec!["10.0.0.5".parse().unwrap(), "10.0.0.7".parse().unwrap()];
+    assert_eq!(lists.pin("plc.local", 44_818, both()).unwrap(), both());
+    assert_eq!(lists.pin("plc.local", 8_818, both()).unwrap(), both()[1..]);
+}
+
+/// A block says itself what kind of device it is for: the way that is left out then is not the one that was allowed.
+#[tokio::test]
+async fn the_kind_of_device_is_no_way_to_another_one() {
+    let engineer = person(Role::Engineer).actor;
+    let mut config = config("4,10.0.0.1,1,0", 0x0E);
+    let behind = policy(&["10.0.0.1 via 1,0"]);
+    let directly = policy(&["10.0.0.1"]);
+    for profile in [Profile::Auto, Profile::Generic, Profile::Logix, Profile::Omron] {
+        config.profile = profile;
+        assert_eq!(ask(&behind, &engineer, &sending(&config), None), Ok(()), "{profile:?}");
+    }
+    config.profile = Profile::Micro800;
+    let answer = ask(&behind, &engineer, &sending(&config), None);
+    assert!(matches!(answer, Err(Denied::Target(_))), "it is sent to the first device itself: {answer:?}");
+    assert_eq!(ask(&directly, &engineer, &sending(&config), None), Ok(()));
+}
+
+/// A list can say what may be written, not what may be hidden.
+#[tokio::test]
+async fn a_listed_service_that_carries_others_allows_none_of_them() {
+    let policy = policy(&["10.0.0.1 via *"]);
+    for (service, class) in [(0x52, 6), (0x0A, 2)] {
+        let rule =
+            NewAllowedWrite { service, class, instance: None, attribute: None, ..set_150("10.0.0.1 via *") };
+        policy.lists.add_write(None, &rule).unwrap();
+    }
+    policy.open_window(&person(Role::Engineer).actor, None).unwrap();
+    let confirmed = policy.hypothetical(1);
+    let operator = person(Role::Operator).actor;
+    // What cannot be read: a route with an object behind it, an offset that goes back.
+    for (service, class, data) in [
+        (0x52, 6, "01 fa 0a 00 10 03 20 04 24 64 30 03 01 00 02 00 01 00 24 00"),
+        (0x0A, 2, "02 00 06 00 06 00 10 03 20 04 24 64 30 03 01 00"),
+    ] {
+        let mut config = config(DEVICE, service);
+        (config.app_cfg.class, config.app_cfg.instance, config.app_cfg.attribute) = (class, 1, 0);
+        config.req_data = data.to_owned();
+        let answer = ask(&policy, &operator, &sending(&config), confirmed.as_ref());
+        assert!(matches!(answer, Err(Denied::NotOnList(_))), "{service:#x}: {answer:?}");
+    }
+}
+
+#[tokio::test]
 async fn roles_send_what_they_may() {
     let policy = policy(&["10.0.0.1"]);
     let listed = set_150("10.0.0.1");
@@ -310,6 +361,7 @@ async fn a_write_is_never_late_and_never_twice() {
     assert_eq!(ask((Some(8), Some(7))), Err(Denied::Twice));
     advance(ticket::GOOD_FOR).await;
     assert_eq!(ask((Some(7), None)), Err(Denied::Late));
+    assert_eq!(ask((Some(7), Some(7))), Err(Denied::Late), "also on another connection");
 }
 
 #[tokio::test(start_paused = true)]
@@ -349,6 +401,17 @@ async fn the_switch_stops_writes_and_only_writes_until_somebody_is_at_the_machin
     assert!(policy.write_state().read_only && policy.write_state().window.is_none());
     std::fs::remove_file(folder.path().join("read-only")).unwrap();
     assert_eq!(policy.open_window(&engineer, None), Ok(()));
+}
+
+#[tokio::test]
+async fn the_switch_stops_writes_also_when_the_disk_takes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let policy = Policy::new(Some(&folder.path().join("gone")), Audit::open(None).unwrap(), 0);
+    let engineer = person(Role::Engineer).actor;
+    policy.open_window(&engineer, None).unwrap();
+    policy.stop_writing(&engineer).unwrap_err();
+    assert!(policy.write_state().read_only && policy.write_state().window.is_none());
+    assert_eq!(policy.open_window(&engineer, None), Err(OpenError::Denied(Denied::ReadOnly)));
 }
 
 #[tokio::test(start_paused = true)]

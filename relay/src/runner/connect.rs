@@ -36,6 +36,11 @@ pub(super) async fn open(
                 if let Err(error) = stream.set_nodelay(true) {
                     tracing::debug!(%error, target.address = %address, "cannot set TCP_NODELAY");
                 }
+                // What has not arrived when the socket is given up must not arrive any more: otherwise the system goes
+                // on sending a write whose block has long ended, until a cable is plugged in again.
+                if let Err(error) = stream.set_zero_linger() {
+                    tracing::warn!(%error, target.address = %address, "cannot set SO_LINGER");
+                }
                 return Ok((stream, ends));
             }
             Err(error) => last = (reason(&error), format!("{address}: {error}")),
@@ -119,6 +124,36 @@ mod tests {
             open(&Endpoint { host: Host::Ip([127, 0, 0, 1]), port }, None).await.unwrap_err();
         assert_eq!(error, ConnectError::Refused);
         assert!(detail.contains("127.0.0.1"), "{detail}");
+    }
+
+    #[tokio::test]
+    async fn what_has_not_arrived_when_a_socket_is_given_up_never_arrives() {
+        use tokio::io::{AsyncReadExt, AsyncWriteExt};
+
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let endpoint = Endpoint { host: Host::Ip([127, 0, 0, 1]), port };
+        let (mut ours, _) = open(&endpoint, None).await.unwrap();
+        let (mut theirs, _) = listener.accept().await.unwrap();
+        // The target takes nothing: what is written waits in the system.
+        let piece = vec![0x5A; 64 * 1024];
+        let mut written = 0;
+        while let Ok(length) =
+            tokio::time::timeout(std::time::Duration::from_millis(200), ours.write(&piece)).await
+        {
+            written += length.unwrap();
+        }
+        drop(ours);
+        let (mut arrived, mut input) = (0, vec![0; 64 * 1024]);
+        let end = loop {
+            match theirs.read(&mut input).await {
+                Ok(0) => break Ok(()),
+                Ok(length) => arrived += length,
+                Err(error) => break Err(error.kind()),
+            }
+        };
+        assert_eq!(end, Err(io::ErrorKind::ConnectionReset));
+        assert!(arrived < written, "{arrived} of {written}");
     }
 
     #[tokio::test]

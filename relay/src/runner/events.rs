@@ -65,9 +65,15 @@ impl Inner {
             }
             return state.engine.permit(wants, Ok(()), now);
         };
-        tracing::warn!(%block, shot, revision, %denied, "not sent");
         state.engine.permit(wants, Err(&denied.to_string()), now);
-        if state.grants.stops(block, revision) {
+        let stops = state.grants.stops(block, revision);
+        if stops {
+            tracing::warn!(%block, shot, revision, %denied, "not sent");
+        } else {
+            // A read goes on asking, perhaps a thousand times a second.
+            tracing::debug!(%block, shot, revision, %denied, "not sent");
+        }
+        if stops {
             // It would ask again and again, and start by itself in the next write window.
             let _ = state.engine.set_in(block, false, now);
         }

@@ -36,6 +36,19 @@ pub struct Effect {
     pub access: Access,
 }
 
+impl Effect {
+    /// Whether this is a service that carries others, which could not be read: nobody knows what it does, so that no
+    /// list can name it.
+    pub fn carries(&self) -> bool {
+        let class = self.class.map(ClassCode);
+        matches!(
+            (self.service, class),
+            (ServiceCode::UnconnectedSend, Some(ClassCode::ConnectionManager))
+                | (ServiceCode::MultipleServicePacket, Some(ClassCode::MessageRouter))
+        )
+    }
+}
+
 /// Everything that the bytes of a message router request do: at least one effect, in the order of the bytes. Any bytes
 /// are taken; what cannot be understood is one effect that is [`Access::Unknown`].
 pub fn effects(request: &[u8]) -> Vec<Effect> {
