@@ -69,8 +69,8 @@ impl Wire {
     /// The engine has been told that it may write this.
     pub fn permitted(&mut self, wants: &Wants) {
         let shot = (wants.block, wants.shot);
-        // Permission may come too late.
-        if !self.ended.contains(&shot) {
+        // Permission may come too late, or be for a connection.
+        if !wants.opens && !self.ended.contains(&shot) {
             self.links.entry(wants.link).or_default().permitted = Some(shot);
         }
     }

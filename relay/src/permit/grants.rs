@@ -136,6 +136,25 @@ impl Grants {
         answer
     }
 
+    /// A connection is about to be opened for a message that will be asked about itself.
+    pub(crate) fn opening(
+        &self,
+        gate: Gate,
+        policy: &Policy,
+        block: BlockId,
+        revision: u64,
+    ) -> Result<(), Denied> {
+        let grant = self.blocks.get(&block).ok_or(Denied::Unknown)?;
+        let Former { order, is_run, earlier } = &grant.command;
+        let order = order.as_ref().ok_or(Denied::NotConfirmed)?;
+        let asked = Asked { order, is_run: *is_run, shot: None, earlier: *earlier };
+        let answer = grant.ask(gate, policy, revision, &asked);
+        if let Err(denied) = &answer {
+            grant.record_denied(policy, block, revision, order, denied);
+        }
+        answer
+    }
+
     /// Whether a block that was denied a message is to stop: it writes, and would try again.
     pub(crate) fn stops(&self, block: BlockId, revision: u64) -> bool {
         let grant = self.blocks.get(&block);

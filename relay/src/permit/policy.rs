@@ -177,6 +177,17 @@ impl Policy {
             let seen = self.seen();
             // With `cipdeck read-only`, or by hand, at the relay's machine.
             self.note_switch(seen.read_only, "local", "");
+            // What was confirmed before the switch does not hold when it is off again.
+            if seen.read_only
+                && let Some(owner) = self.window.close()
+            {
+                self.note(
+                    &Record::new(Event::WindowClosed, "local", "")
+                        .with("owner", owner)
+                        .with("why", "read_only"),
+                );
+                self.changed();
+            }
             if seen != last {
                 last = seen;
                 self.changed();

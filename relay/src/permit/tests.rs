@@ -403,6 +403,27 @@ async fn the_switch_stops_writes_and_only_writes_until_somebody_is_at_the_machin
     assert_eq!(policy.open_window(&engineer, None), Ok(()));
 }
 
+#[tokio::test(start_paused = true)]
+async fn the_switch_at_the_machine_closes_the_window_and_what_was_confirmed_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let policy = Arc::new(Policy::new(Some(folder.path()), Audit::open(None).unwrap(), 0));
+    policy.lists.add_target(None, &allowed("10.0.0.1")).unwrap();
+    let engineer = person(Role::Engineer).actor;
+    policy.open_window(&engineer, None).unwrap();
+    let confirmed = policy.hypothetical(1);
+    std::fs::write(folder.path().join("read-only"), "").unwrap();
+    let mut news = policy.watch();
+    let stop = tokio_util::sync::CancellationToken::new();
+    let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
+    tokio::time::timeout(Duration::from_secs(5), news.changed()).await.unwrap().unwrap();
+    std::fs::remove_file(folder.path().join("read-only")).unwrap();
+    assert_eq!(ask(&policy, &engineer, &write(DEVICE), confirmed.as_ref()), Err(Denied::NoWindow));
+    policy.open_window(&engineer, None).unwrap();
+    assert_eq!(ask(&policy, &engineer, &write(DEVICE), confirmed.as_ref()), Err(Denied::OtherWindow));
+    stop.cancel();
+    keeper.await.unwrap();
+}
+
 #[tokio::test]
 async fn the_switch_stops_writes_also_when_the_disk_takes_nothing() {
     let folder = tempfile::tempdir().unwrap();

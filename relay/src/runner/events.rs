@@ -53,13 +53,14 @@ impl Inner {
     }
 
     fn ask(&self, wants: &Wants, state: &mut State, now: Instant) {
-        let Wants { block, shot, revision, link } = *wants;
+        let Wants { block, shot, revision, link, opens } = *wants;
         let verdict = match &self.guard {
+            Some(guard) if opens => state.grants.opening(guard.gate, &guard.policy, block, revision),
             Some(guard) => state.grants.shot(guard.gate, &guard.policy, block, revision, shot),
             None => Ok(()),
         };
         let Err(denied) = verdict else {
-            if let Some(trail) = state.trails.get(&link) {
+            if let Some(trail) = state.trails.get(&link).filter(|_| !opens) {
                 trail.begin();
                 state.carried.insert(block, Arc::clone(trail));
             }

@@ -15,7 +15,7 @@ use super::target::TargetView;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u64);
 
-/// A message that is about to be written.
+/// A message that is about to be written, or for which a connection is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wants {
     /// Whose message.
@@ -26,6 +26,8 @@ pub struct Wants {
     pub revision: u64,
     /// Where it will be written.
     pub link: LinkId,
+    /// Only a connection is opened for it, or its device asked what it is. The message itself is asked for afterwards.
+    pub opens: bool,
 }
 
 /// What the owner has to do, or may tell others.

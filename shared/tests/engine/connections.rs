@@ -1,6 +1,6 @@
 //! Connections as document 2080-RM001D p. 182 and 195 has them, row by row.
 
-use cipdeck_shared::config::BlockId;
+use cipdeck_shared::config::{BlockId, Profile};
 use cipdeck_shared::engine::{CauseKind, Phase, TargetState};
 use cipdeck_shared::wire::{Command, ConnectionId};
 
@@ -35,12 +35,28 @@ fn a_missing_session_is_made_first_then_the_connection_then_the_message_is_sent(
     assert_eq!(owner.trace(), ["register", "open"]);
     assert_eq!((owner.view(A).phase, owner.view(A).status.status_bits.0), (Phase::Connecting, 3));
     assert!(owner.wants.is_empty(), "opening a connection is not sending the message");
+    assert_eq!(owner.wants_to_open.len(), 1);
     owner.accept_open(link);
     assert_eq!(owner.trace(), ["register", "open", "connected"]);
     assert_eq!(owner.last(link).address, Some((ConnectionId(FIRST_O_T), 1)));
     owner.succeed(link, b"\x04CHP1");
     assert_eq!(owner.bits[&A], [1, 3, 5, 17, 16]);
     assert_eq!(owner.view(A).res_data, b"\x04CHP1");
+}
+
+#[test]
+fn for_a_message_that_may_not_be_sent_no_connection_is_opened_and_nobody_is_asked() {
+    for profile in [Profile::Auto, Profile::Generic] {
+        let mut owner = Owner::new();
+        owner.allowed = false;
+        owner.put_connected(A, "4,10.0.0.1,1,0", |config| config.profile = profile);
+        owner.run(A).unwrap();
+        owner.register();
+        assert_eq!(owner.trace(), ["register"], "{profile:?}");
+        assert_eq!((owner.wants.len(), owner.wants_to_open.len()), (0, 1));
+        let cause = owner.view(A).cause.unwrap();
+        assert_eq!((owner.view(A).phase, cause.what), (Phase::Failed, CauseKind::NotPermitted));
+    }
 }
 
 #[test]

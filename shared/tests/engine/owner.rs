@@ -18,7 +18,7 @@ pub(crate) struct Owner {
     pub(crate) engine: Engine,
     pub(crate) now: Instant,
     pub(crate) allowed: bool,
-    /// Whether `Wants` is answered at once.
+    /// Whether `Wants` is answered at once; one for a connection always is.
     pub(crate) answers: bool,
     /// Whether bytes are written at once.
     pub(crate) writes: bool,
@@ -28,6 +28,7 @@ pub(crate) struct Owner {
     pub(crate) dropped: Vec<LinkId>,
     pub(crate) written: Vec<(LinkId, Vec<u8>)>,
     pub(crate) wants: Vec<Wants>,
+    pub(crate) wants_to_open: Vec<Wants>,
     pub(crate) finished: Vec<(BlockId, BlockView, Exchange)>,
     pub(crate) bits: BTreeMap<BlockId, Vec<u16>>,
     /// How each block looked when it was told last.
@@ -49,6 +50,7 @@ impl Owner {
             dropped: Vec::new(),
             written: Vec::new(),
             wants: Vec::new(),
+            wants_to_open: Vec::new(),
             finished: Vec::new(),
             bits: BTreeMap::new(),
             told: BTreeMap::new(),
@@ -83,8 +85,9 @@ impl Owner {
                 Event::Transmit { link } if self.writes => self.take(link),
                 Event::Transmit { .. } => {}
                 Event::Wants(wants) => {
-                    self.wants.push(wants);
-                    if self.answers {
+                    let asked = if wants.opens { &mut self.wants_to_open } else { &mut self.wants };
+                    asked.push(wants);
+                    if self.answers || wants.opens {
                         self.engine.permit(&wants, if self.allowed { Ok(()) } else { Err("no") }, self.now);
                     }
                 }

@@ -50,7 +50,7 @@ impl Client {
             }
         }
         self.queue.retain(|job| job.block != block);
-        self.asking.take_if(|(asking, _)| *asking == block);
+        self.asking.take_if(|asking| asking.block == block);
         if self.queue.is_empty() && matches!(self.link, Link::Connecting(_) | Link::Registering(..)) {
             self.disconnect(cx);
         }
@@ -74,12 +74,19 @@ impl Client {
         cx: &mut Context<'_>,
     ) {
         let Link::Ready(id, _) = &self.link else { return };
-        if *id != wants.link || self.asking != Some((wants.block, wants.shot)) {
+        if *id != wants.link || self.asking != Some(*wants) {
             return;
         }
         self.asking = None;
-        let Some(job) = self.queue.pop_front() else { return };
-        let Err(why) = verdict else { return self.send(job, cx) };
+        let Some(mut job) = self.queue.pop_front() else { return };
+        let Err(why) = verdict else {
+            if !wants.opens {
+                return self.send(job, cx);
+            }
+            job.may_open = true;
+            self.queue.push_front(job);
+            return self.advance(cx);
+        };
         let failure = Failure::NotPermitted(why.into());
         cx.out.push_back(Output::Block(job.block, Input::Failed(failure)));
         self.advance(cx);

@@ -33,6 +33,8 @@ pub(super) struct Job {
     pub(super) plan: Arc<MessagePlan>,
     /// Sent again once after the target did not know the session: it cannot have acted.
     pub(super) resent: bool,
+    /// A connection may be opened for it.
+    pub(super) may_open: bool,
 }
 
 /// What the client wants done.
@@ -65,8 +67,8 @@ pub(super) struct Client {
     target: Target,
     link: Link,
     queue: VecDeque<Job>,
-    /// The block and shot whose permission has been asked for.
-    asking: Option<(BlockId, u64)>,
+    /// What permission has been asked for.
+    asking: Option<Wants>,
     outstanding: Option<Outstanding>,
     connections: Vec<Connection>,
     /// Requests that close what an earlier socket has left open at the target: it may have room for few.

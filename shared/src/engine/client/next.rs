@@ -14,7 +14,7 @@ use crate::engine::session::Session;
 use crate::engine::time::Instant;
 
 use super::messages::timeout_s;
-use super::{Client, Context, Link, Output, Outstanding, What};
+use super::{Client, Context, Job, Link, Output, Outstanding, What};
 
 impl Client {
     pub(super) fn advance(&mut self, cx: &mut Context<'_>) {
@@ -50,8 +50,11 @@ impl Client {
             }
             return;
         };
-        let (block, plan) = (job.block, Arc::clone(&job.plan));
+        let (block, plan, may_open) = (job.block, Arc::clone(&job.plan), job.may_open);
         if self.known.identity.is_none() && !self.known.anonymous && needs_identity(&plan) {
+            if !may_open {
+                return self.ask(true, cx);
+            }
             cx.out.push_back(Output::Block(block, Input::ConnectStarted));
             return self.identify(cx);
         }
@@ -68,6 +71,7 @@ impl Client {
                     return self.close_connection(index, cx);
                 }
                 Some(_) => {}
+                None if !may_open => return self.ask(true, cx),
                 None => {
                     cx.out.push_back(Output::Block(block, Input::ConnectStarted));
                     if self.close_lost(cx) {
@@ -78,18 +82,15 @@ impl Client {
                 }
             }
         }
-        self.ask(cx);
+        self.ask(false, cx);
     }
 
-    fn ask(&mut self, cx: &mut Context<'_>) {
+    fn ask(&mut self, opens: bool, cx: &mut Context<'_>) {
         let (Link::Ready(link, _), Some(job)) = (&self.link, self.queue.front()) else { return };
-        self.asking = Some((job.block, job.shot));
-        cx.out.push_back(Output::Wants(Wants {
-            block: job.block,
-            shot: job.shot,
-            revision: job.revision,
-            link: *link,
-        }));
+        let Job { block, shot, revision, .. } = *job;
+        let wants = Wants { block, shot, revision, link: *link, opens };
+        self.asking = Some(wants);
+        cx.out.push_back(Output::Wants(wants));
     }
 
     /// Sends Forward_Open for the first message of the queue.

@@ -148,6 +148,7 @@ impl Engine {
             revision: active.revision,
             plan: Arc::clone(&plan),
             resent: false,
+            may_open: false,
         };
         if channel != Channel::Monitor
             && !(self.session_for_controller(id, now) && self.connection_for_controller(id, &plan, now))
