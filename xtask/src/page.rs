@@ -280,7 +280,7 @@ mod tests {
         let mut files = assembled(BOOT, b"one").unwrap();
         let before = files.len();
         zip(&mut files).unwrap();
-        let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with(".gz")).collect();
+        let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with("gz")).collect();
         assert_eq!(zipped.len(), before - 3, "all but the documents and the icon");
         assert!(zipped.iter().all(|(_, content)| content.starts_with(&[0x1F, 0x8B])));
     }

@@ -154,10 +154,10 @@ const EVENTS: [&str; 31] = [
     "block_changed",
     "block_deleted",
     "certificate_reloaded",
-    "backup_made",
     "start",
     "stop",
     "chain_broken",
+    "chain_accepted",
     "audit_resumed",
 ];
 
