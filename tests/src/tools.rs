@@ -24,6 +24,16 @@ pub fn cpppo_python() -> PathBuf {
     })
 }
 
+/// The program schemathesis: `CIPDECK_SCHEMATHESIS`, otherwise `schemathesis` in the search path.
+pub fn schemathesis() -> PathBuf {
+    existing(named("CIPDECK_SCHEMATHESIS").or_else(|| search("schemathesis"))).unwrap_or_else(|| {
+        panic!(
+            "schemathesis is missing: run `python3 -m venv VENV && VENV/bin/pip install schemathesis`, and set \
+             CIPDECK_SCHEMATHESIS=VENV/bin/schemathesis; {HINT}"
+        )
+    })
+}
+
 /// The WebDriver of Chromium: `CIPDECK_CHROMEDRIVER`, otherwise `chromedriver` in the search path.
 pub fn chromedriver() -> PathBuf {
     existing(named("CIPDECK_CHROMEDRIVER").or_else(|| search("chromedriver"))).unwrap_or_else(|| {

@@ -66,6 +66,7 @@ fn journeys(tools: &TestTools) -> Result<()> {
         .env("CIPDECK_BIN", workspace::target().join("debug").join(binary))
         .env("CIPDECK_CHROMEDRIVER", &tools.chromedriver)
         .env("CIPDECK_CPPPO_PYTHON", &tools.cpppo_python)
+        .env("CIPDECK_SCHEMATHESIS", &tools.schemathesis)
         .env("CIPDECK_TSHARK", &tools.tshark)
         .env("CIPDECK_SCREENSHOTS", workspace::target().join("screenshots")))
 }

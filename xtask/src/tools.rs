@@ -17,13 +17,15 @@ use crate::{
     workspace,
 };
 
-/// The browser and its driver, the Python with cpppo, and the reader of captures.
+/// The browser and its driver, programs in Python, and the reader of captures.
 #[derive(Debug)]
 pub(crate) struct TestTools {
     /// The WebDriver of Chromium or Chrome.
     pub(crate) chromedriver: PathBuf,
     /// A Python that can import cpppo.
     pub(crate) cpppo_python: PathBuf,
+    /// The program that asks an HTTP interface what its description promises.
+    pub(crate) schemathesis: PathBuf,
     /// Wireshark's command line.
     pub(crate) tshark: PathBuf,
 }
@@ -36,10 +38,15 @@ pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestToo
     })?;
     report.step("tool: wasm-pack", || install("wasm-pack", WASM_PACK, &["--locked"]))?;
     let chromedriver = report.step("tool: Chromium and its driver", || browser(consent))?;
-    let cpppo_python = report.step("tool: cpppo, a target that is not ours", || cpppo(consent))?;
+    let cpppo_python =
+        report.step("tool: cpppo, a target that is not ours", || python_with(consent, "cpppo", CPPPO))?;
+    let schemathesis = report.step("tool: schemathesis, a reader of OpenAPI that is not ours", || {
+        let python = python_with(consent, "schemathesis", SCHEMATHESIS)?;
+        Ok(python.with_file_name(format!("schemathesis{}", env::consts::EXE_SUFFIX)))
+    })?;
     let tshark = report.step("tool: tshark, a reader of captures that is not ours", || tshark(consent))?;
     report.step("tool: ip, openssl and curl, callers that are not ours", || callers(consent))?;
-    Ok(TestTools { chromedriver, cpppo_python, tshark })
+    Ok(TestTools { chromedriver, cpppo_python, schemathesis, tshark })
 }
 
 /// Installs cargo-deny if it is missing.
@@ -118,24 +125,25 @@ fn callers(consent: Consent) -> Result<()> {
     Ok(())
 }
 
-/// A Python environment of our own that holds cpppo.
-fn cpppo(consent: Consent) -> Result<PathBuf> {
-    let venv = folder().join("cpppo-venv");
+/// A Python environment of our own that holds a package in this version.
+fn python_with(consent: Consent, package: &str, wanted: &str) -> Result<PathBuf> {
+    let venv = folder().join(format!("{package}-venv"));
     let python =
         if cfg!(windows) { venv.join("Scripts").join("python.exe") } else { venv.join("bin").join("python") };
-    let version = || read(program(&python).args(["-c", "import cpppo; print(cpppo.version.__version__)"]));
-    if !version().is_ok_and(|version| version == CPPPO) {
+    let script = format!("from importlib.metadata import version; print(version({package:?}))");
+    let version = || read(program(&python).args(["-c", &script]));
+    if !version().is_ok_and(|version| version == wanted) {
         if system::is_debian() {
-            system::install(consent, &["python3", "python3-venv"], "cpppo")?;
+            system::install(consent, &["python3", "python3-venv"], package)?;
         }
         run(program(system_python()?).args(["-m", "venv", "--clear"]).arg(&venv))?;
         run(program(&python)
             .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
-            .arg(format!("cpppo=={CPPPO}")))?;
+            .arg(format!("{package}=={wanted}")))?;
     }
     match version()? {
-        version if version == CPPPO => println!("    cpppo {version}"),
-        other => bail!("cpppo {other} was installed instead of {CPPPO}"),
+        version if version == wanted => println!("    {package} {version}"),
+        other => bail!("{package} {other} was installed instead of {wanted}"),
     }
     Ok(python)
 }
@@ -146,7 +154,9 @@ fn system_python() -> Result<PathBuf> {
     if debian.is_file() {
         return Ok(debian.to_owned());
     }
-    find("python3").or_else(|| find("python")).context("Python 3 is not on the PATH; cpppo needs it")
+    find("python3")
+        .or_else(|| find("python"))
+        .context("Python 3 is not on the PATH; tools of the tests need it")
 }
 
 /// The version of a crate in Cargo.lock.
@@ -167,3 +177,4 @@ const WASM_PACK: &str = "0.15.1";
 const CARGO_DENY: &str = "0.20.2";
 const CARGO_FUZZ: &str = "0.13.1";
 const CPPPO: &str = "5.2.5";
+const SCHEMATHESIS: &str = "4.32.5";

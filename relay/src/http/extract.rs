@@ -141,7 +141,12 @@ async fn arriving(request: Request) -> Result<Vec<u8>, ApiError> {
     if length > MAX_BODY { Err(ApiError::TooLarge(MAX_BODY)) } else { Ok(body) }
 }
 
+/// Everything that the relay takes is an object. Read into a structure, an array would do, too: its members without
+/// their names.
 fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, ApiError> {
+    if !body.trim_ascii_start().starts_with(b"{") {
+        return Err(ApiError::Unreadable("the body cannot be read: it has to be a JSON object".to_owned()));
+    }
     serde_json::from_slice(body)
         .map_err(|error| ApiError::Unreadable(format!("the body cannot be read: {error}")))
 }
@@ -149,6 +154,7 @@ fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, ApiError> {
 #[cfg(test)]
 mod tests {
     use axum::body::Body;
+    use cipdeck_shared::api::RunRequest;
 
     use super::*;
 
@@ -158,5 +164,13 @@ mod tests {
         let endless = Body::from_stream(beginning.chain(futures_util::stream::pending()));
         let refused = body(Request::new(endless)).await.unwrap_err();
         assert!(refused.to_string().contains("within 30 s"), "{refused}");
+    }
+
+    #[test]
+    fn members_without_their_names_are_no_request() {
+        assert!(parse::<RunRequest>(b" {\"ticket\":null}").is_ok());
+        for body in ["[null]", "[\"9f2c\"]", "null", "", "\"{\""] {
+            assert!(matches!(parse::<RunRequest>(body.as_bytes()), Err(ApiError::Unreadable(_))), "{body}");
+        }
     }
 }

@@ -9,6 +9,10 @@ use crate::permit::Denied;
 
 /// Reads a message. What cannot be read is answered under its id, if it has one.
 pub(super) fn read(text: &str) -> Result<ClientMessage, Box<ServerMessage>> {
+    if !text.trim_ascii_start().starts_with('{') {
+        // An array of a message's members would be read as well.
+        return Err(Box::new(unreadable("", "the message cannot be read: it has to be a JSON object")));
+    }
     serde_json::from_str(text).map_err(|error| {
         let id = serde_json::from_str::<serde_json::Value>(text).ok();
         let id = id.as_ref().and_then(|value| value.get("id")?.as_str()).unwrap_or_default();
@@ -64,6 +68,14 @@ pub(super) async fn carry_out(message: ClientMessage, actor: Actor, blocks: Bloc
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn members_without_their_names_are_no_message() {
+        assert!(read(r#" {"type":"cancel","id":"c1","block":"b7"}"#).is_ok());
+        for text in [r#"["cancel","c1","b7"]"#, "null", "", "7"] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
 
     /// Who writes a client copies from the document.
     #[test]

@@ -269,6 +269,7 @@ pub struct NewToken {
     #[serde(default)]
     pub scope: Vec<String>,
     /// 1 to 366.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 366))]
     pub days: u32,
 }
 
@@ -290,6 +291,7 @@ pub struct NewViewLink {
     /// 1 to 64 characters: where the tablet hangs.
     pub name: String,
     /// 1 to 8784.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 8784))]
     pub hours: u32,
 }
 

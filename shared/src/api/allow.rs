@@ -52,6 +52,7 @@ pub struct NewAllowedWrite {
     /// As in [`AllowedTarget`]; the target has to be allowed as well.
     pub target: String,
     /// 1 to 127.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 127))]
     pub service: u8,
     /// The class.
     pub class: u16,

@@ -40,6 +40,7 @@ pub struct WindowView {
 pub struct NewWindow {
     /// 1 to 60; 15 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 60))]
     pub minutes: Option<u32>,
 }
 

@@ -9,6 +9,7 @@ mod class3;
 mod command_line;
 mod crash;
 mod crowd;
+mod described;
 mod discover;
 mod door;
 mod foreign_client;

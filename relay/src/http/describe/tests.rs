@@ -71,18 +71,20 @@ fn every_message_of_the_web_socket_is_in_the_document() {
 #[test]
 fn what_is_asked_of_the_caller_says_how_to_sign_in() {
     let document = document();
-    let security = |path: &str, method: &str| document["paths"][path][method]["security"].to_string();
-    assert_eq!(security("/api/v1/health", "get"), "[]");
-    assert_eq!(security("/api/v1/blocks", "get"), r#"[{"session":[]},{"token":[]},{"view_link":[]}]"#);
-    assert_eq!(security("/api/v1/blocks", "post"), r#"[{"csrf":[],"session":[]},{"token":[]}]"#);
-    assert_eq!(security("/api/v1/users", "post"), r#"[{"csrf":[],"session":[]}]"#);
+    let security = |path: &str, method: &str| document["paths"][path][method]["security"].clone();
+    let person = json!({"session": [], "csrf": []});
+    assert_eq!(security("/api/v1/health", "get"), json!([]));
+    let looking = json!([{"session": []}, {"token": []}, {"view_link": []}]);
+    assert_eq!(security("/api/v1/blocks", "get"), looking);
+    assert_eq!(security("/api/v1/blocks", "post"), json!([person, {"token": []}]));
+    assert_eq!(security("/api/v1/users", "post"), json!([person]));
 }
 
 #[test]
 fn integers_say_their_range() {
     let document = document();
     let service = &document["components"]["schemas"]["NewAllowedWrite"]["properties"]["service"];
-    assert_eq!((&service["minimum"], &service["maximum"]), (&json!(0), &json!(255)));
+    assert_eq!((&service["minimum"], &service["maximum"]), (&json!(1), &json!(127)));
     let revision = &document["components"]["schemas"]["WriteRequest"]["properties"]["revision"];
     assert_eq!(revision["maximum"], json!(u64::MAX));
 }
