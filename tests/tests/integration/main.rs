@@ -18,6 +18,7 @@ mod half_requests;
 mod history;
 mod late_reply;
 mod limits;
+mod logs;
 mod network;
 mod peers;
 mod permit;
