@@ -18,6 +18,7 @@ pub mod measure;
 pub mod namespace;
 pub mod peers;
 pub mod process;
+pub mod random;
 pub mod relay;
 pub mod rest;
 pub mod secure;

@@ -30,7 +30,7 @@ pub(crate) fn all(report: &mut Report, preference: Preference, long: bool) -> Re
         // Together with the tests that start it: both then share one build of their dependencies.
         run(cargo().args(["build", "-p", "cipdeck-relay", "-p", "cipdeck-tests", "--bin", "cipdeck"]))
     })?;
-    report.step("tests: integration, other implementations, browser journeys", || journeys(&tools))?;
+    report.step("tests: integration, other implementations, browser journeys", || journeys(&tools, long))?;
     if long {
         fuzz::all(report, FUZZ_SECONDS)?;
     }
@@ -59,9 +59,13 @@ fn components(wasm: &WasmToolchain, tools: &TestTools) -> Result<()> {
 }
 
 /// Everything together: the relay as it is, targets that others wrote, and a browser.
-fn journeys(tools: &TestTools) -> Result<()> {
+fn journeys(tools: &TestTools, long: bool) -> Result<()> {
     let binary = format!("cipdeck{}", std::env::consts::EXE_SUFFIX);
-    run(cargo()
+    let mut command = cargo();
+    if long {
+        command.env("CIPDECK_RANDOM_INPUTS", RANDOM_INPUTS);
+    }
+    run(command
         .args(["test", "-p", "cipdeck-tests"])
         .env("CIPDECK_BIN", workspace::target().join("debug").join(binary))
         .env("CIPDECK_CHROMEDRIVER", &tools.chromedriver)
@@ -82,6 +86,9 @@ fn in_browser(command: &mut Command, tools: &TestTools) -> Result<()> {
 
 /// The page's own profile, so that its dependencies are compiled once.
 const PROFILE: &str = "page";
+
+/// Sign-ins, tokens and WebSocket frames that nobody would send.
+const RANDOM_INPUTS: &str = "1000000";
 
 /// Of each target.
 const FUZZ_SECONDS: u64 = 60;

@@ -1,14 +1,17 @@
 //! Passwords: Argon2id, a few at a time.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use argon2::password_hash::phc::PasswordHash;
-use argon2::{Algorithm, Argon2, Params, PasswordHasher, PasswordVerifier, Version};
+use argon2::password_hash::Result as Computed;
+use argon2::password_hash::phc::{Output, ParamsString, PasswordHash, Salt};
+use argon2::{Algorithm, Argon2, Block, Params, Version};
 use tokio::sync::Semaphore;
 
+use super::secret;
 use crate::error::ApiError;
+use crate::runner::lock;
 
 /// What one attempt costs: OWASP's Password Storage Cheat Sheet, Argon2id, asks for at least 19 MiB, two passes, one
 /// lane.
@@ -34,6 +37,7 @@ pub(super) struct Passwords {
     nobody: String,
     turns: Arc<Semaphore>,
     waiting: Arc<AtomicUsize>,
+    tables: Tables,
 }
 
 impl Passwords {
@@ -50,24 +54,23 @@ impl Passwords {
             ),
             turns: Arc::new(Semaphore::new(AT_ONCE)),
             waiting: Arc::default(),
+            tables: Tables::default(),
         })
     }
 
     /// As it is kept: a PHC string with a salt of its own.
     pub(super) async fn hash(&self, password: String) -> Result<String, ApiError> {
-        let hasher = self.hasher.clone();
-        let kept = self.in_turn(move || hasher.hash_password(password.as_bytes())).await?;
-        kept.map(|hash| hash.to_string()).map_err(|error| ApiError::Internal(format!("Argon2: {error}")))
+        let (hasher, tables) = (self.hasher.clone(), self.tables.clone());
+        let salt: [u8; 16] = secret::random()?;
+        let kept = self.in_turn(move || hashed(&hasher, &tables, &password, &salt)).await?;
+        kept.map_err(|error| ApiError::Internal(format!("Argon2: {error}")))
     }
 
     /// Whether it is the password that was kept. Without one it is not, and that takes as long.
     pub(super) async fn is_right(&self, kept: Option<String>, password: String) -> Result<bool, ApiError> {
-        let (hasher, is_known) = (self.hasher.clone(), kept.is_some());
+        let (tables, is_known) = (self.tables.clone(), kept.is_some());
         let kept = kept.unwrap_or_else(|| self.nobody.clone());
-        let is_right = self.in_turn(move || {
-            PasswordHash::new(&kept)
-                .is_ok_and(|hash| hasher.verify_password(password.as_bytes(), &hash).is_ok())
-        });
+        let is_right = self.in_turn(move || is_right(&tables, &kept, &password).unwrap_or(false));
         Ok(is_right.await? && is_known)
     }
 
@@ -84,6 +87,50 @@ impl Passwords {
             work()
         };
         tokio::task::spawn_blocking(work).await.map_err(|error| failed(&error))
+    }
+}
+
+/// A PHC string.
+fn hashed(hasher: &Argon2<'_>, tables: &Tables, password: &str, salt: &[u8]) -> Computed<String> {
+    let hash = PasswordHash {
+        algorithm: Algorithm::Argon2id.ident(),
+        version: Some(Version::V0x13.into()),
+        params: ParamsString::try_from(hasher.params())?,
+        salt: Some(Salt::new(salt)?),
+        hash: Some(tables.output(hasher, password, salt)?),
+    };
+    Ok(hash.to_string())
+}
+
+/// Whether it is the password of a PHC string, which says itself what it costs.
+fn is_right(tables: &Tables, kept: &str, password: &str) -> Computed<bool> {
+    let kept = PasswordHash::new(kept)?;
+    let version = kept.version.map_or(Ok(Version::V0x13), Version::try_from)?;
+    let hasher =
+        Argon2::new(Algorithm::try_from(kept.algorithm.as_str())?, version, Params::try_from(&kept)?);
+    let (Some(salt), Some(expected)) = (kept.salt, kept.hash) else { return Ok(false) };
+    // Compared in a time that does not depend on what is found.
+    Ok(tables.output(&hasher, password, &salt)? == expected)
+}
+
+/// The memory of the computation, which is kept for the next one: an allocator would keep what was given back for the
+/// thread that had it, and so 19 MiB for each of the runtime's many threads.
+#[derive(Clone, Debug, Default)]
+struct Tables(Arc<Mutex<Vec<Vec<Block>>>>);
+
+impl Tables {
+    fn output(&self, hasher: &Argon2<'_>, password: &str, salt: &[u8]) -> Computed<Output> {
+        let mut table = lock(&self.0).pop().unwrap_or_default();
+        let blocks = hasher.params().block_count();
+        if table.len() < blocks {
+            table.resize(blocks, Block::new());
+        }
+        let mut output = [0; Params::DEFAULT_OUTPUT_LEN];
+        let result =
+            hasher.hash_password_into_with_memory(password.as_bytes(), salt, &mut output, &mut table);
+        lock(&self.0).push(table);
+        result?;
+        Ok(Output::new(&output)?)
     }
 }
 
@@ -142,6 +189,30 @@ mod tests {
             assert!(!passwords.is_right(None, password.to_owned()).await.unwrap());
         }
         assert!(!passwords.is_right(Some("x".to_owned()), "x".to_owned()).await.unwrap());
+    }
+
+    #[tokio::test]
+    async fn many_passwords_take_no_more_memory_than_two() {
+        let passwords = Passwords::new(CHEAP).unwrap();
+        let attempts = (0..WAITING).map(|_| passwords.is_right(None, "x".to_owned()));
+        for attempt in futures_util::future::join_all(attempts).await {
+            assert!(!attempt.unwrap());
+        }
+        let tables = lock(&passwords.tables.0).iter().map(Vec::len).collect::<Vec<_>>();
+        assert!((1..=AT_ONCE).contains(&tables.len()), "{tables:?}");
+        assert!(tables.iter().all(|blocks| *blocks == 8), "{tables:?}");
+    }
+
+    /// Hashed by the library's own way, as earlier versions did.
+    #[tokio::test]
+    async fn what_was_kept_before_still_opens() {
+        use argon2::{PasswordHasher, PasswordVerifier};
+        let passwords = Passwords::new(CHEAP).unwrap();
+        let kept = Argon2::default().hash_password(b"correct horse battery").unwrap().to_string();
+        assert!(passwords.is_right(Some(kept.clone()), "correct horse battery".to_owned()).await.unwrap());
+        assert!(!passwords.is_right(Some(kept), "correct horse batterz".to_owned()).await.unwrap());
+        let own = passwords.hash("correct horse battery".to_owned()).await.unwrap();
+        Argon2::default().verify_password(b"correct horse battery", own.as_str()).unwrap();
     }
 
     #[test]
