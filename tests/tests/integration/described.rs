@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use tokio::process::Command;
 
 /// One role takes about a quarter of this on a machine that does nothing else.
-const LIMIT: Duration = Duration::from_secs(180);
+const LIMIT: Duration = Duration::from_mins(3);
 
 /// Of each entry point beside those at the limits of what is described, which are tried in any case.
 const EXAMPLES: &str = "4";
