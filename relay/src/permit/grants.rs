@@ -107,7 +107,11 @@ impl Grants {
     ) -> Result<(), Denied> {
         let grant = self.blocks.get(&block).ok_or(Denied::Unknown)?;
         let asked = Asked { order, is_run: false, shot: None, earlier: None };
-        grant.ask(gate, policy, grant.current, &asked)
+        let answer = grant.ask(gate, policy, grant.current, &asked);
+        if let Err(denied) = &answer {
+            grant.record_denied(policy, block, grant.current, order, denied);
+        }
+        answer
     }
 
     /// A message is about to be written. A write is recorded first: without its record it is not sent.
@@ -238,8 +242,11 @@ impl Grant {
     /// A read that is denied is no event; a write that is denied is one.
     fn record_denied(&self, policy: &Policy, block: BlockId, revision: u64, order: &Order, denied: &Denied) {
         policy.metrics.denied(denied);
-        if let Some(record) = self.write_record(block, revision, order) {
-            policy.note(&record(Event::WriteDenied).with("why", denied.to_string()));
+        if let Some(record) = self.write_record(block, revision, order)
+            && let Some(left_out) = policy.denials.take(order.actor.name(), Instant::now())
+        {
+            let record = record(Event::WriteDenied).with("why", denied.to_string());
+            policy.note(&record.with_some("left_out", (left_out > 0).then_some(left_out)));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! May this be sent? One function, [`permit`], answers: when somebody gives a command, and again immediately before
 //! each message is written. Everything is denied that nothing allows.
 
+mod denials;
 mod grants;
 mod lists;
 mod policy;

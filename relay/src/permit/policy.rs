@@ -11,6 +11,7 @@ use tokio::sync::watch;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
+use super::denials::Denials;
 use super::lists::Lists;
 use super::question::Denied;
 use super::rate::Rate;
@@ -29,6 +30,7 @@ pub(crate) struct Policy {
     pub(super) tickets: Tickets,
     pub(crate) read_only: ReadOnly,
     pub(super) rate: Rate,
+    pub(super) denials: Denials,
     pub(crate) audit: Audit,
     /// What is counted of all this.
     pub(crate) metrics: Metrics,
@@ -51,6 +53,7 @@ impl Policy {
             recorded_switch: AtomicBool::new(ReadOnly::of(folder).is_on()),
             read_only: ReadOnly::of(folder),
             rate: Rate::new(limit),
+            denials: Denials::default(),
             metrics: audit.metrics().clone(),
             audit,
             version: watch::Sender::new(0),

@@ -161,15 +161,6 @@ async fn run_sends_a_block_from_a_file() {
     assert_eq!((ended.code, &ended.json()["ResData"]), (0, &json!("0100")), "{ended:?}");
 }
 
-#[tokio::test]
-async fn serve_listens_on_loopback_only() {
-    let folder = tempfile::TempDir::new().expect("a temporary folder");
-    let data = folder.path().to_str().expect("a path in UTF-8");
-    let ended = cipdeck(&["serve", "--listen", "0.0.0.0:0", "--data", data]).await;
-    assert_eq!(ended.code, 1, "{ended:?}");
-    assert!(ended.stderr.contains("loopback"), "{ended:?}");
-}
-
 async fn get(path: &str, class: u32, attribute: u32) -> Ended {
     send(path, class, attribute, &["--json"]).await
 }

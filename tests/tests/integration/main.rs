@@ -1,7 +1,6 @@
 //! Integration tests of the relay and the command line against real sockets. One binary, because each would link
 //! the whole relay again.
 
-mod audit;
 mod bad_target;
 mod blocks;
 mod capture;
@@ -30,6 +29,7 @@ mod routes;
 mod scale;
 mod scripts;
 mod secrets;
+mod security_model;
 mod shutdown;
 mod slow_viewer;
 mod tls;
