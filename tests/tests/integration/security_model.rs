@@ -16,9 +16,9 @@ fn every_threat_names_a_test_that_exists() {
             let cells: Vec<_> = row.trim_matches('|').split(" | ").collect();
             let [threat, answer, named] = cells[..] else { panic!("three cells: {row}") };
             assert!(!threat.trim().is_empty() && !answer.trim().is_empty(), "{row}");
-            let names: Vec<_> = named.split('`').skip(1).step_by(2).collect();
-            assert!(!names.is_empty(), "no test is named: {row}");
-            for name in names {
+            let quoted: Vec<_> = named.split('`').skip(1).step_by(2).collect();
+            assert!(!quoted.is_empty(), "no test is named: {row}");
+            for name in quoted {
                 assert!(tests.contains(name), "there is no test {name}: {row}");
             }
             threats += 1;
@@ -33,7 +33,7 @@ fn tests() -> BTreeSet<String> {
     let mut tests = BTreeSet::new();
     for folder in ["relay", "shared", "frontend", "tests", "xtask"] {
         for file in rust_files(&root.join(folder)) {
-            let text = fs::read_to_string(&file).unwrap();
+            let text = fs::read_to_string(&file).expect("a source file");
             // In a proptest the attribute is on a function inside of a macro: it looks the same.
             for part in text.split("test").filter(|part| part.starts_with([']', '(', '_'])) {
                 let next = part.split_once("fn ").map(|(between, rest)| (between, rest.split('(').next()));
@@ -50,8 +50,8 @@ fn tests() -> BTreeSet<String> {
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
         if path.is_dir() {
             if path.file_name().is_some_and(|name| name != "target") {
                 files.extend(rust_files(&path));
