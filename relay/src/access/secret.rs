@@ -1,7 +1,6 @@
 //! Secrets that the relay makes: random, told once, and kept as their SHA-256.
 
-use std::fmt::Write;
-
+use cipdeck_shared::config::write_hex;
 use sha2::{Digest as _, Sha256};
 
 use crate::error::ApiError;
@@ -20,7 +19,7 @@ pub(super) fn random<const N: usize>() -> Result<[u8; N], ApiError> {
 
 /// A secret of 256 bits as hexadecimal text.
 pub(super) fn new() -> Result<String, ApiError> {
-    random::<32>().map(|bytes| hex(&bytes))
+    random::<32>().map(|bytes| write_hex(&bytes))
 }
 
 /// What is kept of a secret.
@@ -31,15 +30,7 @@ pub(super) fn digest(secret: &str) -> Digest {
 /// What a page has to say beside the cookie that holds the secret: a foreign page can send the cookie, but it cannot
 /// read this. It follows from the secret, and the secret does not follow from it.
 pub(super) fn csrf(secret: &str) -> String {
-    hex(&digest(&format!("X-CSRF-Token {secret}")))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        // A string takes everything.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    write_hex(&digest(&format!("X-CSRF-Token {secret}")))
 }
 
 #[cfg(test)]
@@ -52,6 +43,10 @@ mod tests {
         assert_eq!((one.len(), two.len()), (64, 64));
         assert_ne!(one, two);
         assert_ne!(csrf(&one), csrf(&two));
-        assert_ne!(csrf(&one), hex(&digest(&one)), "what lies in the memory of the relay opens nothing");
+        assert_ne!(
+            csrf(&one),
+            write_hex(&digest(&one)),
+            "what lies in the memory of the relay opens nothing"
+        );
     }
 }

@@ -107,11 +107,7 @@ impl Grants {
     ) -> Result<(), Denied> {
         let grant = self.blocks.get(&block).ok_or(Denied::Unknown)?;
         let asked = Asked { order, is_run: false, shot: None, earlier: None };
-        let answer = grant.ask(gate, policy, grant.current, &asked);
-        if let Err(denied) = &answer {
-            grant.record_denied(policy, block, grant.current, order, denied);
-        }
-        answer
+        grant.answer(gate, policy, block, grant.current, &asked)
     }
 
     /// A message is about to be written. A write is recorded first: without its record it is not sent.
@@ -152,11 +148,7 @@ impl Grants {
         let Former { order, is_run, earlier } = &grant.command;
         let order = order.as_ref().ok_or(Denied::NotConfirmed)?;
         let asked = Asked { order, is_run: *is_run, shot: None, earlier: *earlier };
-        let answer = grant.ask(gate, policy, revision, &asked);
-        if let Err(denied) = &answer {
-            grant.record_denied(policy, block, revision, order, denied);
-        }
-        answer
+        grant.answer(gate, policy, block, revision, &asked)
     }
 
     /// Whether a block that was denied a message is to stop: it writes, and would try again.
@@ -213,6 +205,19 @@ impl Grant {
             now: Instant::now(),
         };
         gate(policy, &question)
+    }
+
+    /// [`Self::ask`], with a record of what is denied.
+    fn answer(
+        &self,
+        gate: Gate,
+        policy: &Policy,
+        block: BlockId,
+        revision: u64,
+        asked: &Asked<'_>,
+    ) -> Result<(), Denied> {
+        self.ask(gate, policy, revision, asked)
+            .inspect_err(|denied| self.record_denied(policy, block, revision, asked.order, denied))
     }
 
     /// A record about a write; `None` for a read.
