@@ -1,10 +1,12 @@
-//! The types of REST and WebSocket. Described with examples in docs/REST.md and docs/WEBSOCKET.md.
+//! The types of REST and WebSocket. Described with examples in docs/REST.md, docs/WEBSOCKET.md and docs/LIVE.md.
 
 mod access;
 mod allow;
 mod audit;
+mod devices;
 mod discovery;
 mod history;
+mod live;
 mod rest;
 mod secret;
 mod status;
@@ -18,10 +20,18 @@ pub use self::access::{
 };
 pub use self::allow::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllowedWrite};
 pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
+pub use self::devices::{
+    BrowsePage, BrowseRequest, BrowseStep, BrowsedSymbol, BrowsedType, CopyDevice, GroupValues, NewValue,
+    NewVariable, NewVariables, Tree, VariableWritten, VariablesCsv, WriteEntry, WriteVariable,
+};
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
 pub use self::history::{
     HistoryBucket, HistoryDropped, HistoryHealth, HistoryLoss, HistoryPage, HistoryRange, HistoryRun,
     HistoryState, HistoryTrend, HistoryValue,
+};
+pub use self::live::{
+    DeviceHealth, DeviceIdentity, DeviceLoad, DeviceStatus, HealthState, LIVE_PROTOCOL, LiveClientMessage,
+    LiveServerMessage, Quality, VariableValue,
 };
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, Ready, RunRequest,

@@ -6,19 +6,29 @@
 mod block;
 mod block_id;
 mod channel;
+mod device;
+mod group;
 mod hex;
 mod msg_cip_generic;
 mod number;
+mod plant_id;
 mod profile;
 mod target_path;
+mod variable;
 
 pub use self::block::Block;
 pub use self::block_id::BlockId;
 pub use self::channel::{Channel, FurtherChannel, UnknownChannel};
+pub use self::device::{Connecting, DEVICE_REQUESTS_PER_S, DEVICE_TIMEOUT_MS, Device, DeviceConfig};
+pub use self::group::{GROUP_PERIOD_MS, Group, GroupConfig};
 pub use self::hex::{HexError, HexErrorKind, read_hex, space_hex, write_hex};
 pub use self::msg_cip_generic::{
     CipAppCfg, CipControlCfg, CipTargetCfg, Extra, MSG_CIPGENERIC, MsgCipGeneric,
 };
 pub use self::number::{NumberError, read_number};
+pub use self::plant_id::{BadId, DeviceId, GroupId, VariableId};
 pub use self::profile::Profile;
 pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};
+pub use self::variable::{
+    Choice, MAX_DEPTH, Scale, ValueDisplay, Variable, VariableConfig, full_addresses, join_address,
+};
