@@ -5,6 +5,7 @@
 //! | module | job |
 //! | --- | --- |
 //! | [`wire`] | bytes ↔ types |
+//! | [`tag`] | names, types and values of tags, as three families of controllers lay them out |
 //! | [`table`] | codes → names, explanations and sources; which services write |
 //! | [`dissect`] | bytes → what they mean, byte by byte |
 //! | [`sim`] | a simulated device |
@@ -26,4 +27,5 @@ pub mod engine;
 pub mod plan;
 pub mod sim;
 pub mod table;
+pub mod tag;
 pub mod wire;

@@ -66,6 +66,9 @@ fn describe(segment: Segment) -> (&'static str, String) {
             return ("port", format!("{}: {}", port.port(), link(&port)));
         }
         Segment::Symbol(symbol) => return ("symbol", name(symbol.name())),
+        Segment::SimpleData(part) => {
+            return ("part", format!("{} bytes from byte {}", part.size, part.offset));
+        }
         Segment::Logical(logical) => logical,
     };
     match kind {

@@ -142,10 +142,16 @@ impl Object {
         if class.is_none() && (numbers != [None; 3] || !named) {
             return None;
         }
+        // A part of a variable is the last thing about it.
+        if let Some((Segment::SimpleData(_), before)) = segments.split_last()
+            && class.is_none()
+        {
+            segments = before;
+        }
         let rest_is_clear = segments.iter().all(|segment| match segment {
             Segment::Symbol(_) => class.is_none(),
             Segment::Logical(logical) => logical.kind == LogicalKind::Member,
-            Segment::Port(_) => false,
+            Segment::Port(_) | Segment::SimpleData(_) => false,
         });
         let small = |number: Option<u32>| number.map(u16::try_from).transpose().ok();
         rest_is_clear.then_some(Self { class: small(class)?, instance, attribute: small(attribute)? })

@@ -15,6 +15,8 @@ open_enum! {
         Parameter = 0x0F,
         /// Tag names of Logix controllers.
         Symbol = 0x6B,
+        /// Structures of Logix controllers, types of variables of Omron's.
+        Template = 0x6C,
         /// Rockwell's drive parameters.
         DpiParameter = 0x93,
         /// IP configuration.

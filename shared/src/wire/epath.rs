@@ -9,6 +9,7 @@
 use alloc::vec::Vec;
 
 use super::cursor::{DecodeError, DecodeErrorKind, Reader};
+use super::simple_data::SimpleDataSegment;
 use super::symbol::SymbolSegment;
 
 /// A sequence of segments. Its size on the wire is counted in 16-bit words.
@@ -26,6 +27,8 @@ pub enum Segment {
     Port(PortSegment),
     /// A part of a tag's name.
     Symbol(SymbolSegment),
+    /// A part of a variable.
+    SimpleData(SimpleDataSegment),
 }
 
 /// A logical segment: what it addresses, and its number.
@@ -246,6 +249,9 @@ impl Segment {
         if byte == SymbolSegment::CODE {
             return SymbolSegment::read(reader).map(Self::Symbol);
         }
+        if byte == SimpleDataSegment::CODE {
+            return SimpleDataSegment::read(reader).map(Self::SimpleData);
+        }
         let kind = LogicalKind::ALL.into_iter().find(|kind| kind.code() == byte & 0b1111_1100);
         let kind = kind.ok_or_else(|| unexpected(byte))?;
         let value = match byte & 0b11 {
@@ -267,6 +273,7 @@ impl Segment {
         match *self {
             Self::Port(ref port) => port.encode(out),
             Self::Symbol(ref symbol) => symbol.encode(out),
+            Self::SimpleData(part) => part.encode(out),
             Self::Logical(LogicalSegment { kind, value }) => {
                 let [b0, b1, b2, b3] = value.to_le_bytes();
                 match value {

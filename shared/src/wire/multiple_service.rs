@@ -52,43 +52,79 @@ impl<'a> MultipleServicePacket<'a> {
 
     /// Decodes the data of the request.
     pub fn decode(data: &'a [u8]) -> Result<Self, DecodeError> {
-        let mut reader = Reader::new(data);
-        let count = usize::from(reader.u16()?);
-        let unexpected = |at: usize, field: &'static str, found: u16| DecodeError {
-            at,
-            kind: DecodeErrorKind::Unexpected { field, found: found.into() },
-        };
-        if count == 0 {
-            return Err(unexpected(0, "request count", 0));
-        }
-        let head = Self::head(count);
-        let mut offsets = reader.sub(2 * count)?;
-        let mut ends = offsets.clone();
-        let first = ends.u16()?;
-        if usize::from(first) != head {
-            return Err(unexpected(offsets.at(), "offset of the first request", first));
-        }
-        let mut parts = Vec::with_capacity(count);
-        while let Ok(from) = offsets.u16() {
-            let at = ends.at();
-            // The last request ends with the data.
-            let to = ends.u16().map_or(data.len(), usize::from);
-            let part = data.get(from.into()..to).filter(|part| !part.is_empty());
-            let wrong = || {
-                if at == head {
-                    return DecodeError { at: data.len(), kind: DecodeErrorKind::Truncated { needed: 1 } };
-                }
-                unexpected(at, "request offset", u16::try_from(to).unwrap_or(u16::MAX))
-            };
-            parts.push(part.ok_or_else(wrong)?);
-        }
-        Ok(Self { parts })
+        parts(data).map(|parts| Self { parts })
     }
 
     /// Bytes of the count and the offsets.
     const fn head(count: usize) -> usize {
         2 + 2 * count
     }
+}
+
+/// The data of the reply: one message router reply for each request, in their order. The general status around it is
+/// 0, or 0x1E when a part has failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MultipleServiceReply<'a> {
+    parts: Vec<&'a [u8]>,
+}
+
+impl<'a> MultipleServiceReply<'a> {
+    /// Decodes the data of the reply.
+    pub fn decode(data: &'a [u8]) -> Result<Self, DecodeError> {
+        parts(data).map(|parts| Self { parts })
+    }
+
+    /// Message router replies, undecoded.
+    pub fn parts(&self) -> &[&'a [u8]] {
+        &self.parts
+    }
+
+    /// The data of a reply with these parts; refuses what 16-bit offsets cannot reach.
+    pub fn data(parts: &[Vec<u8>]) -> Option<Vec<u8>> {
+        let mut data = u16::try_from(parts.len()).ok()?.to_le_bytes().to_vec();
+        let mut offset = MultipleServicePacket::head(parts.len());
+        for part in parts {
+            data.extend_from_slice(&u16::try_from(offset).ok()?.to_le_bytes());
+            offset += part.len();
+        }
+        data.extend(parts.iter().flatten());
+        Some(data)
+    }
+}
+
+/// The parts between the offsets: requests and replies have the same form.
+fn parts(data: &[u8]) -> Result<Vec<&[u8]>, DecodeError> {
+    let mut reader = Reader::new(data);
+    let count = usize::from(reader.u16()?);
+    let unexpected = |at: usize, field: &'static str, found: u16| DecodeError {
+        at,
+        kind: DecodeErrorKind::Unexpected { field, found: found.into() },
+    };
+    if count == 0 {
+        return Err(unexpected(0, "request count", 0));
+    }
+    let head = MultipleServicePacket::head(count);
+    let mut offsets = reader.sub(2 * count)?;
+    let mut ends = offsets.clone();
+    let first = ends.u16()?;
+    if usize::from(first) != head {
+        return Err(unexpected(offsets.at(), "offset of the first request", first));
+    }
+    let mut parts = Vec::with_capacity(count);
+    while let Ok(from) = offsets.u16() {
+        let at = ends.at();
+        // The last request ends with the data.
+        let to = ends.u16().map_or(data.len(), usize::from);
+        let part = data.get(from.into()..to).filter(|part| !part.is_empty());
+        let wrong = || {
+            if at == head {
+                return DecodeError { at: data.len(), kind: DecodeErrorKind::Truncated { needed: 1 } };
+            }
+            unexpected(at, "request offset", u16::try_from(to).unwrap_or(u16::MAX))
+        };
+        parts.push(part.ok_or_else(wrong)?);
+    }
+    Ok(parts)
 }
 
 #[cfg(test)]

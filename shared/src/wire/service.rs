@@ -20,18 +20,33 @@ open_enum! {
         MultipleServicePacket = 0x0A,
         /// One attribute, written.
         SetAttributeSingle = 0x10,
+        /// Tags: reads elements.
+        ReadTag = 0x4C,
+        /// Tags: writes elements.
+        WriteTag = 0x4D,
         /// Connection Manager: ends a connection.
         ForwardClose = 0x4E,
         /// Connection Manager: hands a message on along a route.
         UnconnectedSend = 0x52,
+        /// Tags: writes a part of what does not fit into a packet.
+        WriteTagFragmented = 0x53,
         /// Connection Manager: opens a connection of at most 511 bytes.
         ForwardOpen = 0x54,
+        /// Tags: the next symbols of a Logix controller.
+        GetInstanceAttributeList = 0x55,
         /// Connection Manager: opens a connection of at most 65,535 bytes.
         LargeForwardOpen = 0x5B,
     }
 }
 
 impl ServiceCode {
+    /// Tags: writes single bits. The number that [`Self::ForwardClose`] has in the Connection Manager.
+    pub const READ_MODIFY_WRITE_TAG: Self = Self::ForwardClose;
+
+    /// Tags: reads a part of what does not fit into a packet. The number that [`Self::UnconnectedSend`] has in the
+    /// Connection Manager.
+    pub const READ_TAG_FRAGMENTED: Self = Self::UnconnectedSend;
+
     /// Bit 7 of the first byte of a reply.
     pub const REPLY: u8 = 0x80;
 }

@@ -12,12 +12,18 @@ open_enum! {
         PathSegmentError = 0x04,
         /// Class or instance is not in the device.
         PathDestinationUnknown = 0x05,
+        /// Only a part of the data: ask for the next one.
+        PartialTransfer = 0x06,
         /// The class or instance does not have the service.
         ServiceNotSupported = 0x08,
         /// Of several attributes at least one failed; each has its own status in the data.
         AttributeListError = 0x0A,
         /// The attribute is read only.
         AttributeNotSettable = 0x0E,
+        /// The state of the device does not allow it.
+        ObjectStateConflict = 0x0C,
+        /// Who asks may not.
+        PrivilegeViolation = 0x0F,
         /// The answer would be longer than the connection or the frame allows.
         ReplyDataTooLarge = 0x11,
         /// The request carried too few bytes.
@@ -26,9 +32,15 @@ open_enum! {
         AttributeNotSupported = 0x14,
         /// The request carried too many bytes.
         TooMuchData = 0x15,
+        /// Of the requests in a packet at least one failed; each has its own status.
+        EmbeddedServiceError = 0x1E,
+        /// The vendor's own: the additional status says what.
+        VendorSpecific = 0x1F,
         /// A parameter of the request has a value that it cannot have.
         InvalidParameter = 0x20,
         /// The path size is not that of the path.
         PathSizeInvalid = 0x26,
+        /// Object specific: the additional status says what.
+        ObjectSpecific = 0xFF,
     }
 }

@@ -57,7 +57,7 @@ pub(super) fn stuck_at(path: &str, cause: &Cause) -> Option<AttrValue> {
 fn hop_with_left(route: &Epath, left: usize) -> Option<(usize, &Segment)> {
     let words = |hop: &Segment| match hop {
         Segment::Port(port) => Epath::default().hop(port.clone()).bytes().len() / 2,
-        Segment::Logical(_) | Segment::Symbol(_) => 0,
+        Segment::Logical(_) | Segment::Symbol(_) | Segment::SimpleData(_) => 0,
     };
     let hops = route.segments();
     let from = |index: usize| hops.iter().skip(index).map(words).sum::<usize>();

@@ -1,0 +1,43 @@
+//! Refusals of tag services in words.
+
+use alloc::string::String;
+use core::fmt::Write;
+
+use crate::table;
+use crate::wire::GeneralStatus;
+
+/// What a general status and the first word behind it mean: `0xFF, extended 0x2107: Tag type in request differs …`.
+pub fn refusal(status: GeneralStatus, extended: Option<u16>) -> String {
+    let mut text = alloc::format!("{status}");
+    if let Some(entry) = table::general_status(status) {
+        // Writing to a String never fails.
+        let _ = write!(text, " {}", entry.name);
+    }
+    if let Some(extended) = extended {
+        let _ = write!(text, ", extended {extended:#06x}");
+        if let Some(entry) = table::extended_status(status, extended) {
+            let _ = write!(text, ": {}", entry.name);
+            if !entry.meaning.is_empty() {
+                let _ = write!(text, " ({})", entry.meaning);
+            }
+        }
+    }
+    text
+}
+
+/// Whether a refusal is about this one tag: asking for it again soon changes nothing, and others are not concerned.
+pub const fn is_about_the_tag(status: GeneralStatus) -> bool {
+    matches!(
+        status,
+        GeneralStatus::PathSegmentError
+            | GeneralStatus::PathDestinationUnknown
+            | GeneralStatus::ObjectStateConflict
+            | GeneralStatus::PrivilegeViolation
+            | GeneralStatus::VendorSpecific
+            | GeneralStatus::InvalidParameter
+            | GeneralStatus::PathSizeInvalid
+            | GeneralStatus::ObjectSpecific
+            | GeneralStatus::NotEnoughData
+            | GeneralStatus::TooMuchData
+    )
+}
