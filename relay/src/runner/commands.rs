@@ -40,8 +40,8 @@ pub(crate) enum Refused {
     Unavailable,
 }
 
-/// Ids for messages of their own, round and round.
-const MAX_PASSING: u32 = 65_536;
+/// Ids of lanes, round and round: more than can be open at once.
+const MAX_LANES: u32 = 1 << 20;
 
 impl Runner {
     /// One message, whatever `TriggerType`. The message goes on when nobody waits for its end any more.
@@ -78,15 +78,56 @@ impl Runner {
 
     /// One message of a block that is forgotten afterwards: a read that belongs to a write.
     pub(crate) async fn pass(&self, name: &str, plan: MessagePlan, order: Order) -> Result<Ended, Refused> {
-        let block = self.0.with(|state, _| {
-            state.passing = state.passing.wrapping_add(1);
-            // From the end of the ids, which no database gets near.
-            BlockId(u32::MAX - state.passing % MAX_PASSING)
-        });
-        self.put(block, name, 1, Ok(plan));
-        // However this future ends, the block goes.
-        let _passing = Passing { runner: self, block };
-        self.run(block, Some(order)).await
+        self.lane(name).send(plan, Some(order)).await
+    }
+
+    /// A block that nobody has stored, for messages of one purpose, one after the other.
+    pub(crate) fn lane(&self, name: &str) -> Lane {
+        let number = self.0.with(|state, _| state.open_lane());
+        // From the end of the ids, which no database gets near.
+        let block = BlockId(u32::MAX - number);
+        Lane { runner: self.clone(), name: name.to_owned(), block, revision: 0 }
+    }
+}
+
+/// A block for messages that nobody has stored. However its future ends, the block goes with it.
+#[derive(Debug)]
+pub(crate) struct Lane {
+    runner: Runner,
+    name: String,
+    block: BlockId,
+    revision: u64,
+}
+
+impl Lane {
+    /// Under which id messages are asked about.
+    pub(crate) const fn block(&self) -> BlockId {
+        self.block
+    }
+
+    /// What the next message will be, without sending it: somebody is asked first. Returns its revision.
+    pub(crate) fn put(&mut self, plan: MessagePlan) -> u64 {
+        self.revision += 1;
+        self.runner.put(self.block, &self.name, self.revision, Ok(plan));
+        self.revision
+    }
+
+    /// Sends what was put.
+    pub(crate) async fn run(&self, order: Option<Order>) -> Result<Ended, Refused> {
+        self.runner.run(self.block, order).await
+    }
+
+    /// One message.
+    pub(crate) async fn send(&mut self, plan: MessagePlan, order: Option<Order>) -> Result<Ended, Refused> {
+        self.put(plan);
+        self.run(order).await
+    }
+}
+
+impl Drop for Lane {
+    fn drop(&mut self) {
+        self.runner.remove(self.block);
+        self.runner.0.with(|state, _| state.lanes.remove(&(u32::MAX - self.block.0)));
     }
 }
 
@@ -115,24 +156,22 @@ impl Inner {
 }
 
 impl State {
+    /// A number that no open lane has.
+    fn open_lane(&mut self) -> u32 {
+        loop {
+            self.last_lane = (self.last_lane + 1) % MAX_LANES;
+            if self.lanes.insert(self.last_lane) {
+                return self.last_lane;
+            }
+        }
+    }
+
     /// A command that the engine refuses leaves everything as it was.
     fn take_back(&mut self, block: BlockId, former: Option<Former>, error: CommandError) -> Refused {
         if let Some(former) = former {
             self.grants.restore(block, former);
         }
         error.into()
-    }
-}
-
-/// A block that is there for one message.
-struct Passing<'a> {
-    runner: &'a Runner,
-    block: BlockId,
-}
-
-impl Drop for Passing<'_> {
-    fn drop(&mut self) {
-        self.runner.remove(self.block);
     }
 }
 

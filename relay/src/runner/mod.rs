@@ -12,7 +12,7 @@ mod link;
 mod timer;
 mod trail;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -28,7 +28,7 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 pub(crate) use self::clock::Clock;
-pub(crate) use self::commands::{Ended, Refused};
+pub(crate) use self::commands::{Ended, Lane, Refused};
 pub(crate) use self::connect::lock;
 use self::link::Socket;
 use self::trail::Trail;
@@ -100,8 +100,9 @@ struct State {
     /// The connection that carries a block's message.
     carried: HashMap<BlockId, Arc<Trail>>,
     runs: HashMap<(BlockId, u64), oneshot::Sender<Ended>>,
-    /// Blocks for one message that nobody has stored.
-    passing: u32,
+    /// The ids of blocks that nobody has stored, counted from the end, and the last one that was given.
+    lanes: BTreeSet<u32>,
+    last_lane: u32,
     /// When the timer will wake.
     armed: Option<Instant>,
     stopping: bool,
