@@ -1,14 +1,17 @@
 //! Devices, groups and variables: bodies of REST requests and answers. The entries themselves are
 //! [`config`](crate::config)'s.
 
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
 use super::live::VariableValue;
+use super::rest::Finding;
 use super::write::Written;
-use crate::config::{Device, Group, GroupId, VariableConfig, VariableId};
+use crate::config::{Device, Group, GroupId, NewVariable, VariableId};
+use crate::plan::Severity;
+use crate::plan::plant::{PlantFinding, PlantRule};
 
 /// `GET /api/v1/devices`, and the message `tree` of the WebSocket: everything but the variables.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,18 +41,6 @@ pub struct CopyDevice {
 pub struct NewVariables {
     /// At most 5000. Findings name the place, counted from 0: `variables[3].address`.
     pub variables: Vec<NewVariable>,
-}
-
-/// One that is to be added.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct NewVariable {
-    /// Instead of `parent`: the full address of a variable of the group, which may be an earlier one of this list.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parent_address: Option<String>,
-    /// What is entered.
-    #[serde(flatten)]
-    pub config: VariableConfig,
 }
 
 /// `POST /api/v1/groups/{id}/variables.csv`: the text of a file, whose first line names the columns. All of it is
@@ -222,6 +213,27 @@ pub struct BrowsedType {
     /// The whole type, as a device's `types` takes it.
     #[serde(rename = "type")]
     pub kind: String,
+}
+
+/// Findings about devices, groups and variables as JSON has them.
+pub fn plant_findings(findings: &[PlantFinding]) -> Vec<Finding> {
+    let finding = |found: &PlantFinding| {
+        let (min, max) = match found.rule {
+            PlantRule::OutOfRange { min, max, .. } => (Some(min), Some(max)),
+            _ => (None, None),
+        };
+        Finding {
+            field: found.field.clone(),
+            severity: Severity::Error,
+            rule: found.rule.key().into(),
+            message: found.rule.to_string(),
+            min,
+            max,
+            error_id: None,
+            sub_error_id: None,
+        }
+    };
+    findings.iter().map(finding).collect()
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it")]

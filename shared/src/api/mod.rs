@@ -22,7 +22,7 @@ pub use self::allow::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllowedW
 pub use self::audit::{AuditHead, AuditPage, AuditRecord, AuditState};
 pub use self::devices::{
     BrowsePage, BrowseRequest, BrowseStep, BrowsedSymbol, BrowsedType, CopyDevice, GroupValues, NewValue,
-    NewVariable, NewVariables, Tree, VariableWritten, VariablesCsv, WriteEntry, WriteVariable,
+    NewVariables, Tree, VariableWritten, VariablesCsv, WriteEntry, WriteVariable, plant_findings,
 };
 pub use self::discovery::{DiscoverRequest, Discovered, DiscoveredDevice};
 pub use self::history::{

@@ -30,5 +30,5 @@ pub use self::plant_id::{BadId, DeviceId, GroupId, VariableId};
 pub use self::profile::Profile;
 pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};
 pub use self::variable::{
-    Choice, MAX_DEPTH, Scale, ValueDisplay, Variable, VariableConfig, full_addresses, join_address,
+    Choice, MAX_DEPTH, NewVariable, Variable, VariableConfig, full_addresses, join_address,
 };

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::plant_id::{GroupId, VariableId};
+use crate::tag::{Display, Scale};
 
 /// A variable as the relay stores and sends it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,7 +52,7 @@ pub struct VariableConfig {
     pub digits: Option<i64>,
     /// How it is shown.
     #[serde(default, skip_serializing_if = "is_auto")]
-    pub display: ValueDisplay,
+    pub display: Display,
     /// Words for numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<Choice>,
@@ -69,17 +70,16 @@ pub struct VariableConfig {
     pub order: i64,
 }
 
-/// `shown = raw * factor + offset`
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A variable that is to be added.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Scale {
-    /// Not 0.
-    #[serde(default = "one")]
-    pub factor: f64,
-    /// In the unit that is shown.
-    #[serde(default)]
-    pub offset: f64,
+pub struct NewVariable {
+    /// Instead of `parent`: the full address of a variable of the group, which may be an earlier one of this list.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parent_address: Option<String>,
+    /// What is entered.
+    #[serde(flatten)]
+    pub config: VariableConfig,
 }
 
 /// A word for a number: `3 = "running"`.
@@ -93,47 +93,10 @@ pub struct Choice {
     pub text: String,
 }
 
-/// How a value is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(rename_all = "lowercase")]
-pub enum ValueDisplay {
-    /// As its type is usually written.
-    #[default]
-    Auto,
-    /// Decimal.
-    Dec,
-    /// Hexadecimal.
-    Hex,
-    /// Binary.
-    Bin,
-    /// The bits as a floating point number.
-    Float,
-    /// The bytes as characters.
-    Ascii,
-}
-
 impl VariableConfig {
     /// With everything that may be left out as it is then.
     pub fn new(name: &str, address: &str) -> Self {
         Self { name: name.into(), address: address.into(), ..Self::default() }
-    }
-}
-
-impl ValueDisplay {
-    /// All of them.
-    pub const ALL: [Self; 6] = [Self::Auto, Self::Dec, Self::Hex, Self::Bin, Self::Float, Self::Ascii];
-
-    /// The word in JSON.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Dec => "dec",
-            Self::Hex => "hex",
-            Self::Bin => "bin",
-            Self::Float => "float",
-            Self::Ascii => "ascii",
-        }
     }
 }
 
@@ -167,13 +130,9 @@ pub fn full_addresses(all: &[Variable]) -> Vec<String> {
 /// Parents above a variable, at most.
 pub const MAX_DEPTH: usize = 16;
 
-const fn one() -> f64 {
-    1.0
-}
-
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it")]
-fn is_auto(display: &ValueDisplay) -> bool {
-    *display == ValueDisplay::Auto
+fn is_auto(display: &Display) -> bool {
+    *display == Display::Auto
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@ mod checks;
 mod effect;
 mod finding;
 pub mod limits;
+pub mod plant;
 mod routed;
 mod rule;
-mod tag_way;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -21,7 +21,6 @@ pub use self::finding::{Field, Finding, Severity};
 pub use self::routed::Routed;
 use self::routed::Routes;
 pub use self::rule::Rule;
-pub use self::tag_way::TagWay;
 
 /// A message that can be sent. Exists only for a configuration without errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -166,7 +165,7 @@ impl MessagePlan {
         self.ucmm_timeout_ms
     }
 
-    /// Bytes that `ResData` holds: 1..=490; more for a message about tags.
+    /// Bytes that `ResData` holds: 1..=490.
     pub const fn res_data_size(&self) -> u16 {
         self.res_data_size
     }

@@ -3,7 +3,6 @@
 use alloc::borrow::ToOwned;
 use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
-use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
@@ -31,16 +30,38 @@ pub enum Display {
     Ascii,
 }
 
+impl Display {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::Auto, Self::Dec, Self::Hex, Self::Bin, Self::Float, Self::Ascii];
+
+    /// The word in JSON.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Dec => "dec",
+            Self::Hex => "hex",
+            Self::Bin => "bin",
+            Self::Float => "float",
+            Self::Ascii => "ascii",
+        }
+    }
+}
+
 /// From what the device holds to what people say: `held × factor + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Scale {
     /// Never 0.
+    #[serde(default = "one")]
     pub factor: f64,
     /// In units.
     #[serde(default)]
     pub offset: f64,
+}
+
+const fn one() -> f64 {
+    1.0
 }
 
 /// How a variable is shown.
@@ -64,7 +85,7 @@ impl View {
     pub fn text(&self, kind: Option<&Type>, value: &Value) -> String {
         match (kind, value) {
             (Some(Type::Array(element, _)), Value::List(values)) => {
-                let all: Vec<_> =
+                let all: alloc::vec::Vec<_> =
                     values.iter().map(|value| self.text(Some(element.as_ref()), value)).collect();
                 alloc::format!("[{}]", all.join(", "))
             }
@@ -155,7 +176,8 @@ fn written(display: Display, bits: u64, size: usize) -> String {
         Display::Hex => alloc::format!("0x{bits:0width$X}", width = 2 * size),
         Display::Bin => {
             let digits = alloc::format!("{bits:0width$b}", width = 8 * size);
-            let nibbles: Vec<_> = digits.as_bytes().chunks(4).map(String::from_utf8_lossy).collect();
+            let nibbles: alloc::vec::Vec<_> =
+                digits.as_bytes().chunks(4).map(String::from_utf8_lossy).collect();
             alloc::format!("0b{}", nibbles.join("_"))
         }
         Display::Float if size == 4 => {
