@@ -32,3 +32,4 @@ pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError
 pub use self::variable::{
     Choice, MAX_DEPTH, NewVariable, Variable, VariableConfig, full_addresses, join_address,
 };
+pub use crate::tag::{Display as ValueDisplay, Scale};

@@ -7,6 +7,7 @@ pub mod limits;
 pub mod plant;
 mod routed;
 mod rule;
+mod tag_way;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -21,6 +22,7 @@ pub use self::finding::{Field, Finding, Severity};
 pub use self::routed::Routed;
 use self::routed::Routes;
 pub use self::rule::Rule;
+pub use self::tag_way::TagWay;
 
 /// A message that can be sent. Exists only for a configuration without errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -165,7 +167,7 @@ impl MessagePlan {
         self.ucmm_timeout_ms
     }
 
-    /// Bytes that `ResData` holds: 1..=490.
+    /// Bytes that `ResData` holds: 1..=490; more for a message about tags.
     pub const fn res_data_size(&self) -> u16 {
         self.res_data_size
     }

@@ -3,6 +3,7 @@
 //! `USINT code | USINT length of what follows: 0 or 2 | [UINT handle]`. Omron W506 8-7-1 calls the second byte the length
 //! of the additional information; a Logix reads both bytes as one UINT, `A0 02` as 0x02A0 (pycomm3): the same bytes.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use super::dialect::Dialect;
@@ -108,7 +109,7 @@ impl Type {
     }
 
     fn array(element: Self, length: u32) -> Option<Self> {
-        Some(Self::Array(alloc::boxed::Box::new(element), Dimensions::of_length(length)?))
+        Some(Self::Array(Box::new(element), Dimensions::of_length(length)?))
     }
 }
 

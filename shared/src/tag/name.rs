@@ -4,7 +4,7 @@
 //! (Logix). A number behind the last dot is a bit: no segment says it, so it is taken from the value.
 
 use alloc::borrow::ToOwned;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 use core::str::FromStr;
@@ -93,7 +93,7 @@ impl TagName {
 
     /// A part of this: `.Speed`, `Speed`, `[3]`, `[1,2].Speed`, `.5`.
     pub fn join(&self, part: &str) -> Result<Self, NameError> {
-        let (whole, part) = (alloc::string::ToString::to_string(self), part.trim());
+        let (whole, part) = (self.to_string(), part.trim());
         let dot = if part.starts_with(['[', '.']) { "" } else { "." };
         alloc::format!("{whole}{dot}{part}").parse()
     }
@@ -227,7 +227,6 @@ impl fmt::Display for TagName {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::string::ToString;
     use hex_literal::hex;
 
     fn name(text: &str) -> TagName {

@@ -3,6 +3,7 @@
 use alloc::borrow::ToOwned;
 use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
@@ -85,7 +86,7 @@ impl View {
     pub fn text(&self, kind: Option<&Type>, value: &Value) -> String {
         match (kind, value) {
             (Some(Type::Array(element, _)), Value::List(values)) => {
-                let all: alloc::vec::Vec<_> =
+                let all: Vec<_> =
                     values.iter().map(|value| self.text(Some(element.as_ref()), value)).collect();
                 alloc::format!("[{}]", all.join(", "))
             }
@@ -176,8 +177,7 @@ fn written(display: Display, bits: u64, size: usize) -> String {
         Display::Hex => alloc::format!("0x{bits:0width$X}", width = 2 * size),
         Display::Bin => {
             let digits = alloc::format!("{bits:0width$b}", width = 8 * size);
-            let nibbles: alloc::vec::Vec<_> =
-                digits.as_bytes().chunks(4).map(String::from_utf8_lossy).collect();
+            let nibbles: Vec<_> = digits.as_bytes().chunks(4).map(String::from_utf8_lossy).collect();
             alloc::format!("0b{}", nibbles.join("_"))
         }
         Display::Float if size == 4 => {
