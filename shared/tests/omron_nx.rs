@@ -49,7 +49,8 @@ fn hex(bytes: &[u8]) -> String {
 
 #[test]
 fn registering_and_unregistering_are_the_documents_bytes() {
-    let header = |command, session| Header::request(command, SessionHandle(session), SenderContext::default());
+    let header =
+        |command, session| Header::request(command, SessionHandle(session), SenderContext::default());
     let mut out = Vec::new();
     let data = RegisterSession::CURRENT.bytes();
     Encapsulation::new(header(Command::RegisterSession, 0), &data).unwrap().encode(&mut out);

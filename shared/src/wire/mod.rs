@@ -20,6 +20,7 @@ mod encapsulation;
 mod epath;
 mod forward_close;
 mod forward_open;
+mod identity;
 mod list_identity;
 mod list_services;
 mod message_router;
@@ -48,6 +49,7 @@ pub use self::forward_close::{ForwardClose, ForwardCloseReply};
 pub use self::forward_open::{
     ConnectionParameters, ForwardOpen, ForwardOpenReply, MAX_CLASSIC_SIZE, TimeoutMultiplier,
 };
+pub use self::identity::IdentityAttributes;
 pub use self::list_identity::{ListIdentityItem, SocketAddress};
 pub use self::list_services::ListServicesItem;
 pub use self::message_router::{AdditionalStatus, MessageRouterReply, MessageRouterRequest};
