@@ -1,10 +1,12 @@
 //! `cipdeck simulate`.
 
+use std::fs;
 use std::net::{IpAddr, SocketAddr};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use cipdeck_shared::engine::Millis;
-use cipdeck_shared::sim::{Device, Fault, Quirk, SimConfig};
+use cipdeck_shared::sim::{Device, Fault, Quirk, SimConfig, SimProfile, TagMemory, Tags};
 use cipdeck_shared::wire::SocketAddress;
 use clap::Args;
 use tokio::net::{TcpListener, UdpSocket};
@@ -20,6 +22,12 @@ pub(super) struct Simulate {
     /// nothing to protect.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:44818")]
     listen: SocketAddr,
+    /// What kind of device: generic (a drive in a chassis), or a controller with tags: micro800, logix, omron
+    #[arg(long, value_name = "KIND", default_value_t)]
+    profile: SimProfile,
+    /// The controller's tags, as JSON, instead of the usual ones: see docs/SIMULATOR.md
+    #[arg(long, value_name = "FILE")]
+    tags: Option<PathBuf>,
     /// From a request to its reply.
     #[arg(long, value_name = "MS", default_value_t = 0)]
     delay: u32,
@@ -35,9 +43,10 @@ pub(super) struct Simulate {
     /// How many class 3 connections can be open at once
     #[arg(long, value_name = "N", default_value_t = SimConfig::default().max_connections)]
     max_connections: usize,
-    /// Longest connected message, with its sequence count; Forward_Open alone cannot say more than 511
-    #[arg(long, value_name = "BYTES", default_value_t = SimConfig::default().max_size)]
-    connection_size: u16,
+    /// Longest connected message, with its sequence count; Forward_Open alone cannot say more than 511. 4002, or 1994
+    /// of an Omron
+    #[arg(long, value_name = "BYTES")]
+    connection_size: Option<u16>,
     /// It does not know Large_Forward_Open
     #[arg(long)]
     no_large: bool,
@@ -47,20 +56,26 @@ impl Simulate {
     /// Runs until the process is asked to stop; then it says in one line what it has done.
     pub(super) async fn execute(self) -> Exit {
         let shutdown = shutdown::requested();
+        let tags = match self.tags.as_deref().map(|file| read_tags(self.profile, file)).transpose() {
+            Ok(tags) => tags,
+            Err(why) => return Exit::usage(&why),
+        };
         let (tcp, udp) = match bind(self.listen).await {
             Ok(sockets) => sockets,
             Err(error) => return Exit::internal(&format!("cannot listen on {}: {error}", self.listen)),
         };
         let address = tcp.local_addr().unwrap_or(self.listen);
+        let usual = self.profile.config();
         let config = SimConfig {
             address: socket_address(address),
             delay: Millis::from(self.delay),
             faults: self.faults,
             quirks: self.quirks,
             max_connections: self.max_connections,
-            max_size: self.connection_size,
+            max_size: self.connection_size.unwrap_or(usual.max_size),
             large: !self.no_large,
-            ..SimConfig::default()
+            tags: tags.or(usual.tags),
+            ..usual
         };
         let clock = Clock::start();
         let device = Arc::new(Mutex::new(Device::new(config)));
@@ -78,6 +93,15 @@ impl Simulate {
         say(&counters.to_string());
         Exit::SUCCESS
     }
+}
+
+/// The tags of a file, or a sentence that says what is wrong with them.
+fn read_tags(profile: SimProfile, file: &Path) -> Result<Tags, String> {
+    let dialect = profile.dialect().ok_or("--tags needs --profile micro800, logix or omron")?;
+    let shown = file.display();
+    let text = fs::read_to_string(file).map_err(|error| format!("cannot read {shown}: {error}"))?;
+    let memory = TagMemory::from_json(dialect, &text).map_err(|error| format!("{shown}: {error}"))?;
+    Ok(memory.into())
 }
 
 /// How often a free TCP port may turn out to be taken on UDP.

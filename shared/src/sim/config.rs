@@ -10,10 +10,14 @@ use crate::wire::SocketAddress;
 use super::fault::Fault;
 use super::identity::SimIdentity;
 use super::module::SimModule;
+use super::profile::SimProfile;
+use super::tags::Tags;
 
 /// A device and what is around it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct SimConfig {
+    /// What kind of controller it is, if it is one. [`SimProfile::config`] has what goes with it.
+    pub profile: SimProfile,
     /// Who it says it is.
     pub identity: SimIdentity,
     /// Where it says it is: in ListIdentity and in TCP/IP attribute 5.
@@ -32,11 +36,14 @@ pub struct SimConfig {
     pub large: bool,
     /// Habits of other devices.
     pub quirks: Vec<Quirk>,
+    /// The tags of a controller.
+    pub tags: Option<Tags>,
 }
 
 impl Default for SimConfig {
     fn default() -> Self {
         Self {
+            profile: SimProfile::Generic,
             identity: SimIdentity::default(),
             address: SocketAddress::v4([127, 0, 0, 1], 44_818),
             delay: Millis(0),
@@ -46,6 +53,7 @@ impl Default for SimConfig {
             max_size: 4_002,
             large: true,
             quirks: Vec::new(),
+            tags: None,
         }
     }
 }

@@ -5,7 +5,8 @@ use core::fmt;
 /// Counted since the device was switched on, over all TCP connections and all modules.
 ///
 /// Printed as one line that scripts may read: `unconnected 3, connections opened 1, connected requests 1000, closed 1,
-/// timed out 0, unregistered 0, repeated 0, dropped 0`.
+/// timed out 0, unregistered 0, repeated 0, dropped 0`; and, if there were any, `, tag reads 12, tag writes 1,
+/// packets 3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Unconnected requests other than those that open or close a connection.
@@ -24,18 +25,30 @@ pub struct Counters {
     pub repeated: u64,
     /// Connected requests to a connection that is not there: no answer.
     pub dropped: u64,
+    /// Requests that read tags, carried out or refused; those in a packet count each.
+    pub tag_reads: u64,
+    /// Requests that write tags.
+    pub tag_writes: u64,
+    /// Messages with several requests in them.
+    pub packets: u64,
 }
 
 impl fmt::Display for Counters {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { unconnected, opened, connected, closed, timed_out, unregistered, repeated, dropped } =
-            self;
+        let Self {
+            unconnected, opened, connected, closed, timed_out, unregistered, repeated, dropped, ..
+        } = *self;
+        let Self { tag_reads, tag_writes, packets, .. } = *self;
         write!(
             f,
             "unconnected {unconnected}, connections opened {opened}, connected requests {connected}, "
         )?;
         write!(f, "closed {closed}, timed out {timed_out}, unregistered {unregistered}, ")?;
-        write!(f, "repeated {repeated}, dropped {dropped}")
+        write!(f, "repeated {repeated}, dropped {dropped}")?;
+        if tag_reads + tag_writes + packets > 0 {
+            write!(f, ", tag reads {tag_reads}, tag writes {tag_writes}, packets {packets}")?;
+        }
+        Ok(())
     }
 }
 

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::engine::time::Instant;
 use crate::wire::{
     ClassCode, ConnectedItem, ConnectionId, EncapsulationStatus, GeneralStatus, Header,
-    MAX_CONNECTED_MESSAGE, MAX_MESSAGE, SenderContext, ServiceCode, SessionHandle,
+    MAX_CONNECTED_MESSAGE, SenderContext, ServiceCode, SessionHandle,
 };
 
 use super::config::{Quirk, SimConfig};
@@ -14,7 +14,8 @@ use super::counters::{Count, Counters};
 use super::fault::Fault;
 use super::module::SimModule;
 use super::objects::Objects;
-use super::request::{Answer, Request, service_of};
+use super::request::{Answer, Head, Refusal, Request, service_of};
+use super::tags::Call;
 
 /// A simulated device, its chassis, and the connections to all of it. See the [module](super) for what is in it.
 #[derive(Clone, Debug)]
@@ -39,6 +40,8 @@ pub(super) struct Caller {
     pub(super) depth: u8,
     /// Whether it came over a connection.
     pub(super) connected: bool,
+    /// The longest reply, in bytes.
+    pub(super) room: usize,
 }
 
 impl Caller {
@@ -57,8 +60,11 @@ impl Default for Device {
 impl Device {
     /// A device just switched on.
     pub fn new(config: SimConfig) -> Self {
-        let slot = Some(SimModule::OWN_SLOT);
-        let own = SimModule { slot, ip: Some(config.address.ip), identity: config.identity.clone() };
+        let own = SimModule {
+            slot: config.profile.slot(),
+            ip: Some(config.address.ip),
+            identity: config.identity.clone(),
+        };
         let modules = [own].into_iter().chain(config.modules.iter().cloned()).map(Objects::new).collect();
         Self {
             config,
@@ -108,8 +114,9 @@ impl Device {
         if let Some(status) = refuse {
             return Answer::refusal(service, status);
         }
-        let answer = self.ask(FRONT, request, Caller { session, depth: 0, connected: false }, now);
-        within(MAX_MESSAGE, service, answer)
+        let room = self.config.profile.max_unconnected();
+        let answer = self.ask(FRONT, request, Caller { session, depth: 0, connected: false, room }, now);
+        within(room, service, answer)
     }
 
     /// Answers a connected request; with the id for the reply. None: there is no such connection.
@@ -131,9 +138,10 @@ impl Device {
         self.counters.connected += 1;
         let service = service_of(item.message);
         let too_long = (item.message.len() > o_t_max).then_some(GeneralStatus::TooMuchData);
+        let caller = Caller { session, depth: 0, connected: true, room: t_o_max };
         let answer = match refuse.or(too_long) {
             Some(status) => Answer::refusal(service, status),
-            None => self.ask(module, item.message, Caller { session, depth: 0, connected: true }, now),
+            None => self.ask(module, item.message, caller, now),
         };
         let answer = within(t_o_max, service, answer);
         if let Some(connection) = self.connections.by_id(session, item.id) {
@@ -153,13 +161,21 @@ impl Device {
     /// Asks one module.
     pub(super) fn ask(&mut self, module: usize, request: &[u8], caller: Caller, now: Instant) -> Answer {
         let service = service_of(request);
-        let request = match Request::decode(request) {
-            Ok(request) => request,
+        let head = match Head::decode(request) {
+            Ok(head) => head,
             Err(status) => return Answer::refusal(service, status),
         };
-        let (manager, data) = (is_connection_manager(&request), request.data);
+        let (manager, data) = (is_connection_manager(&head), head.data);
+        let profile = self.config.profile;
         let outcome = match service {
-            ServiceCode::UnconnectedSend if manager => return self.forward(module, data, caller, now),
+            ServiceCode::UnconnectedSend if manager && profile.routes() => {
+                return self.forward(module, data, caller, now);
+            }
+            ServiceCode::MultipleServicePacket
+                if profile.packs() && head.is_to(ClassCode::MessageRouter, 1) =>
+            {
+                self.packet(module, data, caller, now)
+            }
             ServiceCode::ForwardOpen if manager && caller.may_open() => {
                 self.open(module, false, data, caller.session, now)
             }
@@ -167,12 +183,31 @@ impl Device {
                 self.open(module, true, data, caller.session, now)
             }
             ServiceCode::ForwardClose if manager && caller.may_open() => self.close(module, data),
-            _ => match self.modules.get_mut(module) {
-                Some(objects) => objects.carry_out(&request, now),
-                None => Err(GeneralStatus::PathDestinationUnknown.into()),
-            },
+            _ => self.carry_out(module, &head, caller, now),
         };
         Answer::new(service, outcome)
+    }
+
+    /// Asks the tags, then the objects.
+    fn carry_out(
+        &mut self,
+        module: usize,
+        head: &Head<'_>,
+        caller: Caller,
+        now: Instant,
+    ) -> Result<Vec<u8>, Refusal> {
+        if module == FRONT
+            && let Some(tags) = &mut self.config.tags
+        {
+            let room = caller.room.saturating_sub(Answer::HEAD);
+            let call = Call { head, room, connected: caller.connected, now };
+            if let Some(outcome) = tags.answer(&call, &mut self.counters) {
+                return outcome;
+            }
+        }
+        let request = Request::of(head)?;
+        let objects = self.modules.get_mut(module).ok_or(GeneralStatus::PathDestinationUnknown)?;
+        objects.carry_out(&request, now)
     }
 
     /// A session handle that no other connection has. Never 0.
@@ -215,15 +250,15 @@ pub(super) fn count(modules: &mut [Objects], from: usize, to: usize, what: Count
     }
 }
 
-fn is_connection_manager(request: &Request<'_>) -> bool {
-    (request.class, request.instance) == (ClassCode::ConnectionManager, 1)
+fn is_connection_manager(head: &Head<'_>) -> bool {
+    head.is_to(ClassCode::ConnectionManager, 1)
 }
 
 fn opens_or_closes(request: &[u8]) -> bool {
     let service = service_of(request);
     let asked = [ServiceCode::ForwardOpen, ServiceCode::LargeForwardOpen, ServiceCode::ForwardClose]
         .contains(&service);
-    asked && Request::decode(request).is_ok_and(|request| is_connection_manager(&request))
+    asked && Head::decode(request).is_ok_and(|head| is_connection_manager(&head))
 }
 
 /// A connection size counts the sequence count.

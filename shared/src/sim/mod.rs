@@ -75,10 +75,13 @@ mod network;
 mod objects;
 mod opening;
 mod outbox;
+mod packet;
 mod parameter;
+mod profile;
 mod request;
 mod route;
 mod session;
+mod tags;
 mod wave;
 
 pub use self::assembly::{ASSEMBLY_SIZE, INPUT_ASSEMBLY, OUTPUT_ASSEMBLY};
@@ -90,3 +93,7 @@ pub use self::device::Device;
 pub use self::fault::{Fault, UnknownFault};
 pub use self::identity::SimIdentity;
 pub use self::module::{BACKPLANE, ETHERNET, SimModule};
+pub use self::profile::{SimProfile, UnknownProfile};
+pub use self::tags::{
+    DefinitionError, Motion, TagAccess, TagDefinition, TagFileError, TagMemory, Tags, UnknownMotion,
+};

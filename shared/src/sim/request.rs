@@ -8,6 +8,14 @@ use crate::wire::{
     ServiceCode,
 };
 
+/// A request with its path taken apart.
+#[derive(Clone, Debug)]
+pub(super) struct Head<'a> {
+    pub(super) service: ServiceCode,
+    pub(super) path: Epath,
+    pub(super) data: &'a [u8],
+}
+
 /// A request to class, instance and attribute; a missing number is 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Request<'a> {
@@ -18,7 +26,7 @@ pub(super) struct Request<'a> {
     pub(super) data: &'a [u8],
 }
 
-impl<'a> Request<'a> {
+impl<'a> Head<'a> {
     pub(super) fn decode(bytes: &'a [u8]) -> Result<Self, GeneralStatus> {
         let mut reader = Reader::new(bytes);
         let service = reader.u8().map_err(|_| GeneralStatus::NotEnoughData)?;
@@ -28,6 +36,19 @@ impl<'a> Request<'a> {
         }
         let path = reader.take(2 * usize::from(words)).map_err(|_| GeneralStatus::PathSizeInvalid)?;
         let path = Epath::decode(path).map_err(|_| GeneralStatus::PathSegmentError)?;
+        Ok(Self { service: ServiceCode(service), path, data: reader.rest() })
+    }
+
+    /// Whether the path is that of one object, and nothing more.
+    pub(super) fn is_to(&self, class: ClassCode, instance: u32) -> bool {
+        Request::of(self).is_ok_and(|request| (request.class, request.instance) == (class, instance))
+    }
+}
+
+impl<'a> Request<'a> {
+    /// Of a request to an object.
+    pub(super) fn of(head: &Head<'a>) -> Result<Self, GeneralStatus> {
+        let path = &head.path;
         let understood = path.segments().iter().all(|segment| {
             matches!(segment, Segment::Logical(logical) if matches!(
                 logical.kind,
@@ -40,11 +61,11 @@ impl<'a> Request<'a> {
         let number = |kind| path.logical(kind).unwrap_or(0);
         let small = |kind, status| u16::try_from(number(kind)).map_err(|_| status);
         Ok(Self {
-            service: ServiceCode(service),
+            service: head.service,
             class: ClassCode(small(LogicalKind::Class, GeneralStatus::PathDestinationUnknown)?),
             instance: number(LogicalKind::Instance),
             attribute: small(LogicalKind::Attribute, GeneralStatus::AttributeNotSupported)?,
-            data: reader.rest(),
+            data: head.data,
         })
     }
 }
@@ -79,6 +100,9 @@ pub(super) struct Answer {
 }
 
 impl Answer {
+    /// Bytes of a reply before its data, without additional status.
+    pub(super) const HEAD: usize = 4;
+
     pub(super) fn new(service: ServiceCode, outcome: Result<Vec<u8>, Refusal>) -> Self {
         let mut message = Vec::new();
         match outcome {

@@ -10,3 +10,4 @@ mod objects;
 mod opening;
 mod routes;
 mod session;
+mod tags;
