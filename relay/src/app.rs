@@ -14,6 +14,7 @@ use crate::history::History;
 use crate::http::AllowedHosts;
 use crate::listen::secure_url;
 use crate::permit::Policy;
+use crate::plant::Plant;
 use crate::settings::Settings;
 use crate::store::Store;
 use crate::tls::Tls;
@@ -37,6 +38,8 @@ pub(crate) struct App {
     pub(crate) settings: Arc<Settings>,
     /// What it is all about.
     pub(crate) blocks: Blocks,
+    /// The devices.
+    pub(crate) plant: Plant,
     /// Who did what.
     pub(crate) audit: Audit,
     /// What has happened.
@@ -58,13 +61,14 @@ pub(crate) struct Parts {
     pub(crate) store: Store,
     pub(crate) access: Access,
     pub(crate) blocks: Blocks,
+    pub(crate) plant: Plant,
     pub(crate) history: History,
 }
 
 impl App {
     /// Puts the parts together.
     pub(crate) fn new(settings: Settings, parts: Parts, tls: Option<Tls>, stop: CancellationToken) -> Self {
-        let Parts { policy, store, access, blocks, history } = parts;
+        let Parts { policy, store, access, blocks, plant, history } = parts;
         let audit = policy.audit.clone();
         Self {
             hosts: Arc::default(),
@@ -75,6 +79,7 @@ impl App {
             policy,
             store,
             blocks,
+            plant,
             audit,
             history,
             access,

@@ -36,6 +36,14 @@ pub(crate) enum ApiError {
     /// Somebody else has changed the block.
     #[error("block {} has revision {} by now: look at it and decide again", .0.id, .0.revision)]
     Stale(Box<Block>),
+    /// Somebody else has changed a device, a group or a variable.
+    #[error("{what} has revision {revision} by now: look at it and decide again")]
+    Outdated {
+        /// Its id.
+        what: String,
+        /// The revision that it has.
+        revision: u64,
+    },
     /// A body over its limit.
     #[error("the body is longer than {0} bytes")]
     TooLarge(usize),
@@ -72,7 +80,9 @@ impl ApiError {
             Self::NotFound(_) => (StatusCode::NOT_FOUND, ProblemCode::NotFound, "Not found"),
             Self::Busy(_) => (StatusCode::CONFLICT, ProblemCode::Busy, "Busy"),
             Self::Conflict(_) => (StatusCode::CONFLICT, ProblemCode::Conflict, "Conflict"),
-            Self::Stale(_) => (StatusCode::CONFLICT, ProblemCode::StaleRevision, "Changed by somebody else"),
+            Self::Stale(_) | Self::Outdated { .. } => {
+                (StatusCode::CONFLICT, ProblemCode::StaleRevision, "Changed by somebody else")
+            }
             Self::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, ProblemCode::TooLarge, "Too large"),
             Self::Findings(_) => {
                 (StatusCode::UNPROCESSABLE_ENTITY, ProblemCode::Findings, "Errors in the configuration")

@@ -21,9 +21,11 @@ mod history;
 mod http;
 mod hub;
 mod listen;
+mod live;
 mod metrics;
 mod owner;
 mod permit;
+mod plant;
 mod private;
 mod ritual;
 mod runner;
@@ -55,6 +57,7 @@ pub use self::error::RunError;
 use self::history::History;
 use self::listen::{Doors, Listening, Seats, Site};
 use self::permit::{Gate, Policy, RuleError, permit};
+use self::plant::Plant;
 use self::runner::Guard;
 pub use self::settings::Settings;
 use self::store::{Store, StoredLists};
@@ -123,13 +126,21 @@ async fn serve_with(
     let guard = Guard::new(Arc::clone(&policy), gate);
     let blocks = Blocks::open(store.clone(), Arc::clone(&policy), guard, history.recorder());
     let blocks = blocks.await.map_err(no_store)?;
+    let plant = Plant::open(store.clone(), blocks.runner(), Arc::clone(&policy)).await.map_err(no_store)?;
     tracing::info!(data = ?settings.data, "starting");
 
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(Arc::clone(&policy).keep(stop.clone()));
     let renewal = tls.clone().map(|tls| AbortOnDropHandle::new(tokio::spawn(tls::watch(tls, audit.clone()))));
     let is_set_up = access.is_set_up();
-    let parts = Parts { policy, store, access, blocks: blocks.clone(), history: history.clone() };
+    let parts = Parts {
+        policy,
+        store,
+        access,
+        blocks: blocks.clone(),
+        plant: plant.clone(),
+        history: history.clone(),
+    };
     let app = App::new(settings, parts, tls, stop.clone());
     let viewers = app.viewers.clone();
     let site = site(app);
@@ -150,6 +161,7 @@ async fn serve_with(
     if tokio::time::timeout(LAST_ANSWERS, viewers.wait()).await.is_err() {
         tracing::info!("some viewers did not take their last message");
     }
+    plant.stop().await;
     blocks.stop().await;
     history.close().await;
     // It has heard of the stop.

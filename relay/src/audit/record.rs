@@ -148,6 +148,8 @@ events! {
     BlockChanged = "block_changed",
     /// A block is gone.
     BlockDeleted = "block_deleted",
+    /// A device, a group or variables were made, changed or deleted.
+    PlantChanged = "plant_changed",
     /// Another certificate is in use.
     CertificateReloaded = "certificate_reloaded",
     /// The records before this one are broken, and were set aside. Writes are stopped.

@@ -69,6 +69,11 @@ impl Blocks {
         &self.0.hub
     }
 
+    /// What sends messages.
+    pub(crate) fn runner(&self) -> Runner {
+        self.0.runner.clone()
+    }
+
     /// One block.
     pub(crate) fn block(&self, id: BlockId) -> Result<Block, ApiError> {
         self.0.hub.block(id).ok_or_else(|| ApiError::no_block(id))

@@ -6,7 +6,9 @@ use std::sync::LazyLock;
 use axum::body::Bytes;
 use axum::http::header;
 use axum::response::IntoResponse;
-use cipdeck_shared::api::{ClientMessage, Problem, ProblemCode, ServerMessage};
+use cipdeck_shared::api::{
+    ClientMessage, LiveClientMessage, LiveServerMessage, Problem, ProblemCode, ServerMessage,
+};
 use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
@@ -20,15 +22,16 @@ use crate::access::{CSRF_HEADER, SESSION_COOKIE, VIEW_COOKIE};
         title = "cipdeck",
         description = "The relay between the browser and EtherNet/IP devices. docs/REST.md describes the interface with examples; \
                        docs/WEBSOCKET.md describes the WebSocket at /api/v1/ws, whose messages are the schemas ClientMessage and \
-                       ServerMessage. Configured for local access, the relay asks nobody on its own machine to sign in. \
+                       ServerMessage; docs/LIVE.md describes the one at /api/v1/live, with LiveClientMessage and LiveServerMessage. Configured for local access, the relay asks nobody on its own machine to sign in. \
                        `x-cipdeck-need` says what a request asks of its caller, `x-cipdeck-problems` which problems it is answered with."
     ),
-    components(schemas(ClientMessage, ServerMessage, Problem)),
+    components(schemas(ClientMessage, ServerMessage, LiveClientMessage, LiveServerMessage, Problem)),
     tags(
         (name = "access", description = "Who may call"),
         (name = "audit", description = "Who did what"),
         (name = "blocks", description = "The stored blocks and how they look"),
         (name = "commands", description = "What a block is told to do"),
+        (name = "devices", description = "Devices, groups, variables and their values"),
         (name = "history", description = "Every run of every block"),
         (name = "lists", description = "What may be reached and written"),
         (name = "relay", description = "The relay itself"),

@@ -1,11 +1,12 @@
 //! Parts of requests, whose rejections are problems like all others.
 
 use std::net::{IpAddr, SocketAddr};
+use std::str::FromStr;
 use std::time::Duration;
 
 use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, Request};
 use axum::http::request::Parts;
-use cipdeck_shared::config::BlockId;
+use cipdeck_shared::config::{BadId, BlockId};
 use futures_util::StreamExt;
 use serde::de::DeserializeOwned;
 
@@ -31,6 +32,10 @@ pub(super) struct OptionalJson<T>(pub(super) T);
 /// The block in the address.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Id(pub(super) BlockId);
+
+/// The device, the group or the variable in the address.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlantId<T>(pub(super) T);
 
 /// The number in the address, of anything but a block.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +78,16 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
         let Path(text) =
             Path::<String>::from_request_parts(parts, state).await.map_err(|_| unknown("like that"))?;
         text.parse().map(Self).map_err(|_| unknown(&text))
+    }
+}
+
+impl<S: Send + Sync, T: FromStr<Err = BadId> + Send> FromRequestParts<S> for PlantId<T> {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let unknown = |why: BadId| ApiError::NotFound(format!("there is nothing like that: {why}"));
+        let text = Path::<String>::from_request_parts(parts, state).await.map(|Path(text)| text);
+        text.unwrap_or_default().parse().map(Self).map_err(unknown)
     }
 }
 

@@ -8,8 +8,10 @@ mod blocks;
 mod caller;
 mod commands;
 mod describe;
+mod devices;
 mod discovery;
 mod extract;
+mod groups;
 mod guard;
 mod health;
 mod history;
@@ -17,6 +19,7 @@ mod metrics;
 mod need;
 mod observe;
 mod targets;
+mod variables;
 mod write;
 
 use axum::Router;
@@ -32,7 +35,7 @@ use utoipa_axum::routes;
 use self::access::{passes, session, users, view};
 use crate::app::App;
 use crate::error::ApiError;
-use crate::ws;
+use crate::{live, ws};
 
 pub(crate) use self::caller::Caller;
 pub(crate) use self::guard::AllowedHosts;
@@ -90,6 +93,18 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(allow::remove_target))
         .routes(routes!(allow::writes, allow::add_write))
         .routes(routes!(allow::remove_write))
+        .routes(routes!(live::upgrade))
+        .routes(routes!(devices::list, devices::create))
+        .routes(routes!(devices::show, devices::replace, devices::delete))
+        .routes(routes!(devices::copy))
+        .routes(routes!(devices::status))
+        .routes(routes!(devices::writes))
+        .routes(routes!(groups::create))
+        .routes(routes!(groups::replace, groups::delete))
+        .routes(routes!(groups::values))
+        .routes(routes!(groups::variables, groups::add))
+        .routes(routes!(groups::csv, groups::add_csv))
+        .routes(routes!(variables::replace, variables::delete))
         .routes(routes!(blocks::list, blocks::create))
         .routes(routes!(blocks::show, blocks::replace, blocks::delete))
         .routes(routes!(blocks::status))

@@ -27,7 +27,7 @@ pub(crate) enum Need {
     Person,
     /// Sends messages.
     Send,
-    /// Changes blocks.
+    /// Changes blocks and devices.
     Edit,
     /// Opens the write window: a person.
     Window,
@@ -90,6 +90,25 @@ pub(crate) const NEEDS: &[(&str, &str, Need)] = &[
     ("GET", "/api/v1/history.csv", Look),
     ("GET", "/api/v1/history/trend", Look),
     ("GET", "/api/v1/history/state", Look),
+    ("GET", "/api/v1/live", Look),
+    ("GET", "/api/v1/devices", Look),
+    ("POST", "/api/v1/devices", Edit),
+    ("GET", "/api/v1/devices/{id}", Look),
+    ("PUT", "/api/v1/devices/{id}", Edit),
+    ("DELETE", "/api/v1/devices/{id}", Edit),
+    ("POST", "/api/v1/devices/{id}/copy", Edit),
+    ("GET", "/api/v1/devices/{id}/status", Look),
+    ("GET", "/api/v1/devices/{id}/writes", Look),
+    ("POST", "/api/v1/groups", Edit),
+    ("PUT", "/api/v1/groups/{id}", Edit),
+    ("DELETE", "/api/v1/groups/{id}", Edit),
+    ("GET", "/api/v1/groups/{id}/values", Look),
+    ("GET", "/api/v1/groups/{id}/variables", Look),
+    ("POST", "/api/v1/groups/{id}/variables", Edit),
+    ("GET", "/api/v1/groups/{id}/variables.csv", Look),
+    ("POST", "/api/v1/groups/{id}/variables.csv", Edit),
+    ("PUT", "/api/v1/variables/{id}", Edit),
+    ("DELETE", "/api/v1/variables/{id}", Edit),
     ("GET", "/api/v1/blocks", Look),
     ("POST", "/api/v1/blocks", Edit),
     ("GET", "/api/v1/blocks/{id}", Look),
@@ -136,7 +155,10 @@ impl Need {
             Send => {
                 (role.may_send(), "a viewer looks and sends nothing: ask an administrator for another role")
             }
-            Edit => (role.may_edit(), "blocks are changed by engineers: ask an administrator for the role"),
+            Edit => (
+                role.may_edit(),
+                "blocks and devices are changed by engineers: ask an administrator for the role",
+            ),
             Window => (
                 role.may_write() && is_person,
                 "a write window is opened by an operator or an engineer who has signed in",

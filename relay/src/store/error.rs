@@ -24,7 +24,7 @@ pub(crate) enum StoreError {
         known: usize,
     },
     /// A configuration that is no JSON any more.
-    #[error("a stored block cannot be read: {0}")]
+    #[error("something that was stored cannot be read: {0}")]
     Json(#[from] serde_json::Error),
     /// The system gives no random numbers.
     #[error("{0}")]

@@ -1,4 +1,4 @@
-//! Blocks, users, tokens and lists in SQLite, on one writer thread: SQLite has one writer, so the code says so.
+//! Blocks, devices, users, tokens and lists in SQLite, on one writer thread: SQLite has one writer, so the code says so.
 //!
 //! Nothing that was acknowledged is lost, not even by `kill -9`: WAL with `synchronous = FULL`.
 
@@ -7,6 +7,7 @@ mod allow;
 mod blocks;
 mod error;
 mod lock;
+mod plant;
 mod schema;
 mod writer;
 
@@ -16,6 +17,7 @@ pub(crate) use self::access::{PassKind, StoredPass, StoredUser};
 pub(crate) use self::allow::StoredLists;
 pub(crate) use self::blocks::Change;
 pub(crate) use self::error::StoreError;
+pub(crate) use self::plant::{Fresh, StoredPlant};
 pub(crate) use self::schema::migrate;
 use self::writer::Writer;
 

@@ -11,6 +11,7 @@ const MIGRATIONS: &[&str] = &[
     include_str!("migrations/0001_blocks.sql"),
     include_str!("migrations/0002_allow.sql"),
     include_str!("migrations/0003_access.sql"),
+    include_str!("migrations/0004_plant.sql"),
 ];
 
 /// How long a backup may keep the database from what only one can do.

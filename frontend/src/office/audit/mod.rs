@@ -127,7 +127,7 @@ fn event_words(word: &str) -> AttrValue {
 }
 
 /// As docs/AUDIT.md has them.
-const EVENTS: [&str; 31] = [
+const EVENTS: [&str; 32] = [
     "write_requested",
     "write_permitted",
     "write_ended",
@@ -153,6 +153,7 @@ const EVENTS: [&str; 31] = [
     "block_created",
     "block_changed",
     "block_deleted",
+    "plant_changed",
     "certificate_reloaded",
     "start",
     "stop",
