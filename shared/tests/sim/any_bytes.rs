@@ -122,3 +122,71 @@ proptest! {
         }
     }
 }
+
+/// Requests to tags and to what describes them, with anything behind.
+fn tag_request() -> impl Strategy<Value = Vec<u8>> {
+    let service =
+        prop::sample::select(vec![0x01_u8, 0x03, 0x0A, 0x0E, 0x4C, 0x4D, 0x4E, 0x52, 0x53, 0x55, 0x5F]);
+    let segment = prop::sample::select(vec![
+        &b"\x91\x07stMotor\x00"[..],
+        b"\x91\x06arTemp",
+        b"\x91\x06arBool",
+        b"\x91\x05speed\x00",
+        b"\x91\x08gsRecipe",
+        b"\x91\x06Motor1",
+        b"\x91\x03Run\x00",
+        b"\x91\x05Flags\x00",
+        b"\x91\x06Recipe",
+        b"\x91\x0CProgram:Main",
+        b"\x91\x01x\x00",
+        b"\x28\x02",
+        b"\x2A\x00\xFF\xFF\xFF\xFF",
+        b"\x80\x03\x00\x00\x00\x00\x04\x00",
+        b"\x80\x03\xFC\xFF\xFF\xFF\xFF\xFF",
+        b"\x20\x6B",
+        b"\x20\x6C",
+        b"\x20\x6A",
+        b"\x20\x02",
+        b"\x24\x00",
+        b"\x24\x01",
+        b"\x25\x00\x01\x01",
+        b"\x25\x00\xCE\x0F",
+    ]);
+    let data = prop_oneof![
+        vec(any::<u8>(), 0..16),
+        // A type, a count, and values.
+        (
+            prop::sample::select(vec![0xC1_u8, 0xC3, 0xC4, 0xCA, 0xD0, 0xD3, 0xDA]),
+            0_u8..4,
+            vec(any::<u8>(), 0..12)
+        )
+            .prop_map(|(kind, count, values)| [&[kind, 0, count, 0][..], &values].concat()),
+        (0_u8..3, 0_u8..40).prop_map(|(count, offset)| vec![count, 0, offset, 0, 0, 0]),
+    ];
+    (service, vec(segment, 0..4), data).prop_map(|(service, path, data)| {
+        let path = path.concat();
+        let words = u8::try_from(path.len() / 2).unwrap();
+        [&[service, words][..], &path, &data].concat()
+    })
+}
+
+proptest! {
+    #[test]
+    fn controllers_answer_any_request_about_tags(
+        requests in vec(prop_oneof![4 => tag_request(), 1 => vec(any::<u8>(), 0..40)], 1..8), now in any::<u64>(),
+    ) {
+        use cipdeck_shared::sim::SimProfile;
+        use cipdeck_shared::wire::MultipleServicePacket;
+        for profile in [SimProfile::Logix, SimProfile::Omron, SimProfile::Micro800] {
+            let mut device = Device::new(profile.config());
+            let parts: Vec<&[u8]> = requests.iter().map(Vec::as_slice).filter(|part| !part.is_empty()).collect();
+            let packet = MultipleServicePacket::new(parts).map(|packet| packet.request().unwrap().bytes());
+            for request in requests.iter().chain(&packet) {
+                let answer = device.answer(request, Instant(now));
+                let reply = MessageRouterReply::decode(&answer).unwrap();
+                prop_assert_eq!(reply.service.0, request.first().map_or(0, |service| service & 0x7F));
+                prop_assert!(answer.len() <= 504, "{:?}: {} bytes", profile, answer.len());
+            }
+        }
+    }
+}

@@ -3,6 +3,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod any_bytes;
+mod browse;
 mod connections;
 mod faults;
 mod frames;

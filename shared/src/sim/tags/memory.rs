@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use crate::engine::time::Instant;
 use crate::tag::{Dialect, Member, Structure, Type, Value};
 
-use super::address::{Base, Part, Step};
+use super::address::{Base, Part, Step, is_program};
 use super::motion::Motion;
 use super::structures::Structures;
 
@@ -217,6 +217,16 @@ impl Tag {
                 }
             }
         }
+    }
+
+    /// The program and the name in it, of a tag of a program.
+    pub(super) fn program(&self) -> Option<(&str, &str)> {
+        if is_program(self.name.as_bytes()) { self.name.split_once('.') } else { None }
+    }
+
+    /// The name without the program.
+    pub(super) fn short_name(&self) -> &str {
+        self.program().map_or(&self.name, |(_, name)| name)
     }
 }
 

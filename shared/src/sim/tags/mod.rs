@@ -7,10 +7,14 @@ mod address;
 mod file;
 mod memory;
 mod motion;
+mod object;
 mod read;
 mod refusal;
 mod service;
 mod structures;
+mod symbols;
+mod templates;
+mod variables;
 mod write;
 
 pub use self::file::TagFileError;

@@ -8,10 +8,11 @@ use crate::engine::time::Instant;
 use crate::sim::counters::Counters;
 use crate::sim::request::{Head, Refusal};
 use crate::tag::Dialect;
-use crate::wire::ServiceCode;
+use crate::wire::{ClassCode, GeneralStatus, ServiceCode};
 
 use super::address::{Address, Part};
 use super::memory::TagMemory;
+use super::object::Object;
 use super::refusal::Wrong;
 use super::write::Place;
 
@@ -70,12 +71,33 @@ impl Answers for TagMemory {
     }
 
     fn answer(&mut self, call: &Call<'_>, counters: &mut Counters) -> Option<Result<Vec<u8>, Refusal>> {
+        if let Some(object) = Object::of(call.head, self.dialect) {
+            return Some(self.object(call, &object));
+        }
         let address = Address::of(&call.head.path)?;
         Some(self.tag(call, &address, counters))
     }
 }
 
+/// What the program in the simulated Logix is called.
+const PROJECT: &[u8] = b"cipdeck_demo";
+
 impl TagMemory {
+    /// A request to an object that describes tags.
+    fn object(&self, call: &Call<'_>, object: &Object<'_>) -> Result<Vec<u8>, Refusal> {
+        match (self.dialect, object.class) {
+            (Dialect::Omron, _) => self.variable_object(call.head, object, call.room),
+            (Dialect::Micro800, _) if !call.connected => Err(Wrong::Service.refusal(self.dialect)),
+            (_, ClassCode::Symbol) => self.symbol(call.head, object, call.room),
+            (_, ClassCode::Template) => self.template(call.head, object, call.room),
+            _ if (object.instance, call.head.service) == (1, ServiceCode::GetAttributesAll) => {
+                let length = u16::try_from(PROJECT.len()).unwrap_or_default();
+                Ok([&length.to_le_bytes()[..], PROJECT].concat())
+            }
+            _ => Err(GeneralStatus::ServiceNotSupported.into()),
+        }
+    }
+
     /// A request to a tag.
     fn tag(
         &mut self,
@@ -116,6 +138,11 @@ impl TagMemory {
             }
             ServiceCode::READ_MODIFY_WRITE_TAG if dialect == Dialect::Logix => {
                 tag.modify(dialect, &place, data).map(|()| Vec::new()).map_err(refuse)
+            }
+            ServiceCode::GetAttributesAll if dialect == Dialect::Omron => {
+                let part = Part::find(&tag.kind, dialect, place.steps).map_err(refuse)?;
+                let kind = part.kind.clone();
+                self.variable(&kind).ok_or_else(|| refuse(Wrong::Missing))
             }
             _ => Err(refuse(Wrong::Service)),
         }

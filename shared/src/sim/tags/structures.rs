@@ -41,6 +41,15 @@ impl Structures {
             }
         }
     }
+
+    pub(super) fn all(&self) -> &[Arc<Structure>] {
+        &self.all
+    }
+
+    /// Which one it is, counted from 0.
+    pub(super) fn position(&self, structure: &Structure) -> Option<usize> {
+        self.all.iter().position(|known| **known == *structure)
+    }
 }
 
 /// CRC-16 with the polynomial 0xA001 reflected. What real controllers count into it is not known; clients only send

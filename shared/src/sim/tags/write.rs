@@ -61,7 +61,7 @@ impl Tag {
                     [on, 0] if count == 1 => core::slice::from_ref(on),
                     values => values,
                 };
-                exactly(values, count)?;
+                let values = enough(dialect, values, count)?;
                 for (bit, on) in (usize::from(bit)..).zip(values) {
                     let within = u8::try_from(bit % 8).unwrap_or(0);
                     set_bit(&mut self.bytes, part.offset + bit / 8, within, *on != 0);
@@ -72,7 +72,7 @@ impl Tag {
                 self.write_text(dialect, &part, values)
             }
             _ => {
-                exactly(values, part.span(count))?;
+                let values = enough(dialect, values, part.span(count))?;
                 self.allowed(dialect, &part, values)?;
                 self.store(part.offset, values)
             }
@@ -137,16 +137,14 @@ impl Tag {
         bytes: SimpleDataSegment,
         values: &[u8],
     ) -> Result<(), Wrong> {
+        let is_text = matches!(part.kind, Type::String(_));
         let element = part.clone().elements(dialect);
         if element.kind.head(dialect) != Some(head.kind) {
             return Err(Wrong::Kind);
         }
         let place = region(dialect, part, bytes)?;
         self.writable()?;
-        let values = match element.kind {
-            Type::String(_) if !element.array => text(values)?,
-            _ => values,
-        };
+        let values = if is_text { text(values)? } else { values };
         exactly(values, place.len())?;
         self.store(place.start, values)
     }
@@ -157,7 +155,7 @@ impl Tag {
         let (place, values) = match dialect {
             Dialect::Micro800 => {
                 let (length, values) = values.split_first().ok_or(Wrong::Short)?;
-                exactly(values, (*length).into())?;
+                let values = enough(dialect, values, (*length).into())?;
                 let (first, place) = place.split_first_mut().ok_or(Wrong::Outside)?;
                 if values.len() > place.len() {
                     return Err(Wrong::Long);
@@ -207,6 +205,15 @@ impl Tag {
 pub(super) struct Place<'a> {
     pub(super) steps: &'a [super::address::Step<'a>],
     pub(super) bytes: Option<SimpleDataSegment>,
+}
+
+/// So many bytes. An Omron refuses more; a Logix takes what the count says: pycomm3 1.2.16 sends a single write twice in
+/// one message, and is used with real ones.
+fn enough(dialect: Dialect, values: &[u8], size: usize) -> Result<&[u8], Wrong> {
+    if dialect == Dialect::Omron {
+        exactly(values, size)?;
+    }
+    values.get(..size).ok_or(Wrong::Short)
 }
 
 /// As many bytes as that, neither fewer nor more.
