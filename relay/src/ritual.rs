@@ -4,6 +4,7 @@ use cipdeck_shared::api::{ReadValue, Written};
 use cipdeck_shared::config::{Channel, MsgCipGeneric, read_hex, write_hex};
 use cipdeck_shared::dissect;
 use cipdeck_shared::plan::MessagePlan;
+use cipdeck_shared::tag::DataFields;
 
 use crate::runner::Ended;
 
@@ -22,7 +23,7 @@ pub(crate) fn reader(config: &MsgCipGeneric) -> Option<MessagePlan> {
 }
 
 /// What a read has found, or why there is nothing.
-pub(crate) fn found(ended: &Ended) -> Result<ReadValue, String> {
+pub(crate) fn found(ended: &Ended, layout: &str) -> Result<ReadValue, String> {
     let status = &ended.view.status;
     if !ended.view.q {
         let cause = ended.view.cause.as_ref().and_then(|cause| cause.detail.clone());
@@ -30,7 +31,7 @@ pub(crate) fn found(ended: &Ended) -> Result<ReadValue, String> {
         return Err(cause.map_or_else(|| ids.clone(), |cause| format!("{ids}: {cause}")));
     }
     let reply = ended.exchange.response().unwrap_or_default();
-    Ok(value(&ended.exchange.request, reply, &ended.view.res_data))
+    Ok(value(&ended.exchange.request, reply, &ended.view.res_data, layout))
 }
 
 /// What a write will leave behind: its data as the read would find it.
@@ -40,7 +41,7 @@ pub(crate) fn wanted(reader: &MessagePlan, config: &MsgCipGeneric) -> Option<Rea
     let data = data.get(..length)?;
     let service = reader.bytes().first()? | 0x80;
     let reply = [&[service, 0, 0, 0], data].concat();
-    Some(value(reader.bytes(), &reply, data))
+    Some(value(reader.bytes(), &reply, data, &config.req_layout))
 }
 
 /// Both sides of a write that has been carried out.
@@ -53,8 +54,12 @@ pub(crate) fn written(
     Written { old, new, read_back, is_equal }
 }
 
-fn value(request: &[u8], reply: &[u8], data: &[u8]) -> ReadValue {
-    let decoded = dissect::decode(request, reply);
+/// `layout` is what somebody says about the data that is written, and so about what is read.
+fn value(request: &[u8], reply: &[u8], data: &[u8], layout: &str) -> ReadValue {
+    let decoded = match DataFields::read(layout) {
+        Ok(layout) => dissect::decode_as(&layout, reply),
+        Err(_) => dissect::decode(request, reply),
+    };
     let words: Vec<_> = decoded
         .iter()
         .map(|value| {

@@ -90,7 +90,9 @@ impl Blocks {
     async fn read(&self, actor: &Actor, block: &Block, plan: MessagePlan) -> Result<ReadValue, String> {
         let order = Order::read(actor.clone());
         let ended = self.0.runner.pass(&block.config.name, plan, order).await;
-        ended.map_err(|refused| refused.to_string()).and_then(|ended| ritual::found(&ended))
+        ended
+            .map_err(|refused| refused.to_string())
+            .and_then(|ended| ritual::found(&ended, &block.config.req_layout))
     }
 
     fn order(&self, actor: &Actor, id: BlockId, ticket: Option<&str>) -> Result<Order, ApiError> {

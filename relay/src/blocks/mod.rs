@@ -215,7 +215,7 @@ impl Inner {
 
 /// All findings about a configuration, and the bytes that it would send.
 pub(crate) fn check(config: &MsgCipGeneric) -> Checked {
-    let (plan, all) = MessagePlan::parse(config);
+    let (plan, all) = MessagePlan::check(config);
     let request = plan.map(|plan| write_hex(plan.bytes()));
     Checked { findings: findings(&all), request }
 }
@@ -228,9 +228,9 @@ fn plan(config: &MsgCipGeneric) -> Result<MessagePlan, Vec<Finding>> {
 /// What can be stored, in its one spelling.
 fn accepted(config: MsgCipGeneric) -> Result<(MsgCipGeneric, MessagePlan), ApiError> {
     let config = normalised(config);
-    match plan(&config) {
-        Ok(plan) => Ok((config, plan)),
-        Err(all) => Err(ApiError::Findings(findings(&all))),
+    match MessagePlan::check(&config) {
+        (Some(plan), _) => Ok((config, plan)),
+        (None, all) => Err(ApiError::Findings(findings(&all))),
     }
 }
 

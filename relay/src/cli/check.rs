@@ -27,7 +27,7 @@ impl Check {
             Ok(config) => config,
             Err(exit) => return exit,
         };
-        let (plan, findings) = MessagePlan::parse(&config);
+        let (plan, findings) = MessagePlan::check(&config);
         if self.json {
             say(&checked(plan.as_ref(), &findings));
         } else {

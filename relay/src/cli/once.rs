@@ -48,7 +48,7 @@ impl Mode {
 
 /// Runs what can be run and prints it.
 pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
-    let (plan, findings) = MessagePlan::parse(config);
+    let (plan, findings) = MessagePlan::check(config);
     report::findings(&findings);
     let Some(plan) = plan else {
         if mode.json {
@@ -96,7 +96,7 @@ async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> E
 fn print(answer: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
     let status = answer.status();
     let exchange = &answer.exchange;
-    show(&Report::new(&status, &exchange.request, exchange.response()), config, mode, number);
+    show(&Report::new(&status, &exchange.request, exchange.response(), config), config, mode, number);
 }
 
 /// Prints how a run has ended.

@@ -5,6 +5,7 @@ use cipdeck_shared::config::{MsgCipGeneric, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
+use cipdeck_shared::tag::DataFields;
 use cipdeck_shared::wire::ServiceCode;
 use serde::Serialize;
 
@@ -41,12 +42,18 @@ pub(super) struct Report<'a> {
 
 impl<'a> Report<'a> {
     /// With the message router bytes of the request and of the reply, if one came.
-    pub(super) fn new(status: &'a BlockStatus, request: &[u8], response: Option<&[u8]>) -> Self {
-        Self {
-            status,
-            response: response.map(write_hex),
-            decoded: response.map(|response| dissect::decode(request, response)).unwrap_or_default(),
-        }
+    pub(super) fn new(
+        status: &'a BlockStatus,
+        request: &[u8],
+        response: Option<&[u8]>,
+        config: &MsgCipGeneric,
+    ) -> Self {
+        let decode = |response| match DataFields::read(&config.res_layout) {
+            Ok(layout) => dissect::decode_as(&layout, response),
+            // Empty: nobody has said.
+            Err(_) => dissect::decode(request, response),
+        };
+        Self { status, response: response.map(write_hex), decoded: response.map(decode).unwrap_or_default() }
     }
 
     /// Whether the message failed.

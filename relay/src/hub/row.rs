@@ -4,8 +4,10 @@ use std::collections::VecDeque;
 use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
+use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, read_hex};
+use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
+use cipdeck_shared::tag::DataFields;
 
 use crate::capture::Carried;
 use crate::runner::Trace;
@@ -27,6 +29,8 @@ pub(super) struct Row {
     /// All edges there ever were, with the dropped ones.
     edge_count: u64,
     exchanges: VecDeque<Kept>,
+    /// `ResLayout`, if there is one.
+    layout: Option<DataFields>,
 }
 
 /// One message that has ended.
@@ -43,6 +47,7 @@ impl Row {
     pub(super) fn new(block: Block, version: u64) -> Self {
         let status = BlockStatus::new(block.id, &BlockView::default(), None, None);
         Self {
+            layout: layout_of(&block),
             block,
             version,
             block_version: version,
@@ -59,7 +64,18 @@ impl Row {
             self.status.last = None;
         }
         self.block = block;
+        self.layout = layout_of(&self.block);
+        let data = self.status.last.as_ref().and_then(|last| read_hex(&last.res_data).ok());
+        let decoded = self.decode(&data.unwrap_or_default());
+        if let Some(last) = &mut self.status.last {
+            last.decoded = decoded;
+        }
         (self.version, self.block_version) = (version, version);
+    }
+
+    /// What data means by the block's layout.
+    fn decode(&self, data: &[u8]) -> Vec<Decoded> {
+        self.layout.as_ref().map_or_else(Vec::new, |layout| dissect::fields(layout, data))
     }
 
     pub(super) fn changed(&mut self, view: &BlockView, version: u64, at: String) {
@@ -87,7 +103,8 @@ impl Row {
         let at = self.status.at.clone().unwrap_or_else(wall_clock::now);
         if view.q {
             let status = BlockStatus::new(self.block.id, view, Some(at.clone()), None);
-            self.status.last = Some(LastSuccess::of(&status, at.clone()));
+            let decoded = self.decode(&view.res_data);
+            self.status.last = Some(LastSuccess { decoded, ..LastSuccess::of(&status, at.clone()) });
         }
         if self.exchanges.len() == MAX_EXCHANGES {
             self.exchanges.pop_front();
@@ -135,6 +152,11 @@ impl Row {
         let begin = self.edges.iter().rposition(|edge| *edge == (0, StatusBits(StatusBits::EN)));
         (self.edges.len() - begin.unwrap_or(0)) as u64
     }
+}
+
+/// One that cannot be read has been refused when it was stored.
+fn layout_of(block: &Block) -> Option<DataFields> {
+    DataFields::read(&block.config.res_layout).ok()
 }
 
 /// What a block asks, and whom.

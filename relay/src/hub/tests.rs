@@ -108,3 +108,24 @@ fn a_changed_block_is_told_with_its_status() {
     let update = hub.update(&mut cursor).unwrap();
     assert_eq!((update.blocks[0].revision, update.statuses.len()), (2, 1));
 }
+
+#[test]
+fn the_last_value_is_read_by_the_blocks_layout() {
+    let hub = Hub::recording(Recorder::default());
+    let block = |layout: &str| {
+        let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+        layout.clone_into(&mut config.res_layout);
+        Block { id: BlockId(1), revision: 1, config }
+    };
+    hub.put(block("speed: REAL; run: BOOL"));
+    let view = BlockView { q: true, res_data: vec![0, 0, 0x48, 0x42, 1], ..BlockView::default() };
+    hub.finished(BlockId(1), &view, &Exchange::default(), None);
+    let texts = || {
+        let status = hub.update(&mut Cursor::default()).unwrap().statuses.remove(0);
+        let decoded = status.last.unwrap().decoded;
+        decoded.iter().map(|value| format!("{} {}", value.name, value.text)).collect::<Vec<_>>()
+    };
+    assert_eq!(texts(), ["speed 50", "run TRUE"]);
+    hub.put(block("a: UINT; b: UINT; c: USINT"));
+    assert_eq!(texts(), ["a 0", "b 16968", "c 1"], "another layout reads the same bytes");
+}

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::write::Written;
 use crate::config::{BlockId, write_hex};
+use crate::dissect::Decoded;
 use crate::engine::{BlockView, Cause, CipStatus, Phase, StatusBits};
 
 /// Most edges in one message.
@@ -77,13 +78,16 @@ pub struct LastSuccess {
     pub res_length: u16,
     /// When (RFC 3339).
     pub at: String,
+    /// What `ResData` means by the block's `ResLayout`; empty without one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub decoded: Vec<Decoded>,
 }
 
 impl LastSuccess {
     /// What a status with Q TRUE leaves behind.
     pub fn of(status: &BlockStatus, at: String) -> Self {
         let (request, res_data) = (status.request.clone(), status.res_data.clone());
-        Self { request, res_data, res_length: status.res_length, at }
+        Self { request, res_data, res_length: status.res_length, at, decoded: Vec::new() }
     }
 }
 

@@ -54,6 +54,12 @@ pub struct MsgCipGeneric {
     /// Size of the `ResData` array. 1..=490.
     #[serde(rename = "ResDataSize", default = "res_data_size")]
     pub res_data_size: i64,
+    /// What the bytes of `ReqData` are: `REAL`, or `speed: REAL; run: BOOL`. Empty: nobody says.
+    #[serde(rename = "ReqLayout", default, skip_serializing_if = "String::is_empty")]
+    pub req_layout: String,
+    /// What the bytes of `ResData` are. Empty: as the attribute is known, or a guess.
+    #[serde(rename = "ResLayout", default, skip_serializing_if = "String::is_empty")]
+    pub res_layout: String,
     /// Unknown members.
     #[serde(flatten)]
     #[cfg_attr(feature = "openapi", schema(ignore))]
@@ -163,6 +169,8 @@ impl MsgCipGeneric {
             req_data: String::new(),
             req_length: None,
             res_data_size: res_data_size(),
+            req_layout: String::new(),
+            res_layout: String::new(),
             extra: Extra::new(),
         }
     }

@@ -14,4 +14,4 @@ mod words;
 pub use self::frame::frame;
 pub use self::message::{reply, request};
 pub use self::tree::Node;
-pub use self::value::{Decoded, decode};
+pub use self::value::{Decoded, decode, decode_as, fields};

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use crate::table::{self, Field};
+use crate::tag::DataFields;
 use crate::wire::{CipType, GeneralStatus, MessageRouterReply, Reader, ServiceCode};
 
 use super::path::Address;
@@ -14,6 +15,7 @@ use super::words::{ascii, hex};
 
 /// One value in data. Guesses may cover the same bytes: they are alternatives.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Decoded {
     /// The first byte, counted from the start of the data.
     pub from: usize,
@@ -21,8 +23,10 @@ pub struct Decoded {
     pub to: usize,
     /// CIP type; `bytes` or `ASCII` in a guess.
     #[serde(rename = "type")]
+    #[cfg_attr(feature = "openapi", schema(value_type = String))]
     pub type_name: Cow<'static, str>,
     /// What it is, such as `product name`; `data` in a guess.
+    #[cfg_attr(feature = "openapi", schema(value_type = String))]
     pub name: Cow<'static, str>,
     /// The value.
     pub text: String,
@@ -45,6 +49,40 @@ pub fn decode(request: &[u8], reply: &[u8]) -> Vec<Decoded> {
         GeneralStatus::Success => values(layout, reply.data),
         _ => Vec::new(),
     }
+}
+
+/// The values in the data of a successful reply, with the layout that somebody has given for it. Bytes that it leaves
+/// over are guessed.
+pub fn decode_as(layout: &DataFields, reply: &[u8]) -> Vec<Decoded> {
+    match MessageRouterReply::decode(reply) {
+        Ok(reply) if reply.status == GeneralStatus::Success => fields(layout, reply.data),
+        _ => Vec::new(),
+    }
+}
+
+/// What data is by a layout: its fields, as far as the data goes, then guesses for what is left.
+pub fn fields(layout: &DataFields, data: &[u8]) -> Vec<Decoded> {
+    let mut end = 0;
+    let each = layout.each().iter().map_while(|field| {
+        let value = field.value(data)?;
+        end = field.to(data);
+        let type_name = Cow::Owned(field.type_name());
+        Some(Decoded {
+            from: field.from,
+            to: end,
+            type_name,
+            name: Cow::Owned(field.name.clone()),
+            text: value.to_string(),
+            guess: false,
+        })
+    });
+    let mut found: Vec<_> = each.collect();
+    let rest = data.get(end..).unwrap_or_default();
+    let shifted = |guess: Decoded| Decoded { from: guess.from + end, to: guess.to + end, ..guess };
+    if !rest.is_empty() {
+        found.extend(values(None, rest).into_iter().map(shifted));
+    }
+    found
 }
 
 /// Service and address of a request, as far as they can be read.

@@ -8,6 +8,7 @@ use crate::config::{
     Profile, Target, TargetPath, read_hex,
 };
 use crate::table::Access;
+use crate::tag::DataFields;
 use crate::wire::{Epath, MessageRouterRequest, ServiceCode};
 
 use super::finding::{Field, Finding, Severity};
@@ -180,6 +181,25 @@ impl Checks {
 
     pub(super) fn res_data_size(&mut self, config: &MsgCipGeneric) -> Option<u16> {
         self.number(Field::ResDataSize, config.res_data_size, 1, MAX_RESPONSE_DATA)
+    }
+
+    pub(super) fn layouts(&mut self, config: &MsgCipGeneric) {
+        self.layout(Field::ResLayout, &config.res_layout);
+        let size = self.layout(Field::ReqLayout, &config.req_layout).and_then(|fields| fields.size());
+        // What is wrong with the data itself is said elsewhere.
+        if let (Some(layout), Ok(data)) = (size, read_hex(&config.req_data))
+            && layout != data.len()
+        {
+            let length = data.len();
+            self.warning(Field::ReqLayout, Rule::LayoutLength { layout, length });
+        }
+    }
+
+    fn layout(&mut self, field: Field, text: &str) -> Option<DataFields> {
+        if text.trim().is_empty() {
+            return None;
+        }
+        DataFields::read(text).map_err(|error| self.error(field, Rule::Layout(error))).ok()
     }
 
     pub(super) fn resume(&mut self, config: &MsgCipGeneric, access: Option<Access>) {

@@ -80,6 +80,10 @@ pub enum Field {
     ReqLength,
     /// `ResDataSize`
     ResDataSize,
+    /// `ReqLayout`
+    ReqLayout,
+    /// `ResLayout`
+    ResLayout,
     /// A member that this version does not know.
     Unknown(String),
 }
@@ -109,6 +113,8 @@ impl fmt::Display for Field {
             Self::ReqData => "ReqData",
             Self::ReqLength => "ReqLength",
             Self::ResDataSize => "ResDataSize",
+            Self::ReqLayout => "ReqLayout",
+            Self::ResLayout => "ResLayout",
             Self::Unknown(name) => name,
         })
     }
@@ -129,9 +135,16 @@ impl Finding {
             (Field::Path, _) => 49,
             (Field::Service, _) => 50,
             (Field::ReqData | Field::ReqLength, Rule::TooMuchData { .. } | Rule::OutOfRange { .. }) => 51,
-            (Field::Name | Field::Kind | Field::Resume | Field::KeepAlive | Field::Unknown(_), _) => {
-                return None;
-            }
+            (
+                Field::Name
+                | Field::Kind
+                | Field::Resume
+                | Field::KeepAlive
+                | Field::ReqLayout
+                | Field::ResLayout
+                | Field::Unknown(_),
+                _,
+            ) => return None,
             _ => return Some((33, None)),
         };
         Some((33, Some(sub)))

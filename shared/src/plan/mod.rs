@@ -111,6 +111,17 @@ impl MessagePlan {
         (plan, findings)
     }
 
+    /// [`Self::parse`], and what is to be said about the layouts. They change nothing that is sent, and the workbench has
+    /// no room for reading them: it leaves them to the relay.
+    pub fn check(config: &MsgCipGeneric) -> (Option<Self>, Vec<Finding>) {
+        let (plan, mut findings) = Self::parse(config);
+        let mut checks = Checks::default();
+        checks.layouts(config);
+        let readable = checks.findings.iter().all(|finding| finding.severity != Severity::Error);
+        findings.append(&mut checks.findings);
+        (plan.filter(|_| readable), findings)
+    }
+
     /// Service, path and data.
     pub const fn request(&self) -> &MessageRouterRequest {
         &self.request

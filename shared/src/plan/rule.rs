@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crate::config::{HexErrorKind, PathError};
+use crate::tag::TypeError;
 
 /// What is wrong. The page translates [`Rule::key`] with [`Rule::arguments`]; `Display` is the English text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -97,11 +98,20 @@ pub enum Rule {
     ResumeNeedsRead,
     /// `ConnClose` acts on class 3 connections only.
     ConnCloseUnconnected,
+    /// A layout that cannot be read.
+    Layout(TypeError),
+    /// A layout that does not fit the data.
+    LayoutLength {
+        /// Bytes of the layout.
+        layout: usize,
+        /// Bytes in `ReqData`.
+        length: usize,
+    },
 }
 
 impl Rule {
     /// Every key that [`Self::key`] can return: the page has a text for each.
-    pub const KEYS: [&'static str; 32] = [
+    pub const KEYS: [&'static str; 34] = [
         "out_of_range",
         "missing",
         "text_too_long",
@@ -133,6 +143,8 @@ impl Rule {
         "member_id_count",
         "resume_needs_read",
         "conn_close_unconnected",
+        "layout",
+        "layout_length",
         "unreadable_number",
     ];
 
@@ -177,6 +189,8 @@ impl Rule {
             Self::MemberIdCount { .. } => "member_id_count",
             Self::ResumeNeedsRead => "resume_needs_read",
             Self::ConnCloseUnconnected => "conn_close_unconnected",
+            Self::Layout(_) => "layout",
+            Self::LayoutLength { .. } => "layout_length",
         }
     }
 
@@ -205,6 +219,12 @@ impl Rule {
                 (Some(("value", value.to_string())), Some(("used", used.to_string())), None)
             }
             Self::MemberIdCount { found } => (Some(("found", found.to_string())), None, None),
+            Self::Layout(error) => {
+                (Some(("position", error.at.to_string())), Some(("why", error.why.clone())), None)
+            }
+            Self::LayoutLength { layout, length } => {
+                (Some(("layout", layout.to_string())), Some(("length", length.to_string())), None)
+            }
             _ => (None, None, None),
         };
         [first, second, third].into_iter().flatten().collect()
@@ -253,6 +273,10 @@ impl fmt::Display for Rule {
                 f.write_str("Resume is allowed for services that are known to read only")
             }
             Self::ConnCloseUnconnected => f.write_str("acts on class 3 connections only (CipConnMode 1)"),
+            Self::Layout(error) => write!(f, "{error}; write REAL, or speed: REAL; run: BOOL"),
+            Self::LayoutLength { layout, length } => {
+                write!(f, "the layout has {layout} bytes, ReqData has {length}")
+            }
         }
     }
 }

@@ -253,3 +253,24 @@ fn every_rule_has_a_key_that_is_listed() {
         assert!(Rule::KEYS.contains(&rule.key()) && Rule::KEYS.contains(&rule.name()));
     }
 }
+
+#[test]
+fn a_layout_that_cannot_be_read_is_no_block_and_one_that_does_not_fit_is_a_warning() {
+    let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+    (config.res_layout, config.req_layout) = ("speed: REEL".into(), "UINT".into());
+    config.req_data = "0102030405".into();
+    let (plan, findings) = MessagePlan::check(&config);
+    let said: Vec<_> = findings.iter().map(|it| alloc::format!("{}: {}", it.field, it.rule)).collect();
+    assert!(plan.is_none());
+    assert_eq!(
+        said,
+        [
+            "ResLayout: \"REEL\" is neither a type nor a layout that is known at character 8; write REAL, or speed: \
+             REAL; run: BOOL",
+            "ReqLayout: the layout has 2 bytes, ReqData has 5",
+        ]
+    );
+    config.res_layout = "speed: REAL".into();
+    let (plan, findings) = MessagePlan::check(&config);
+    assert!(plan.is_some() && findings.len() == 1, "a layout changes nothing that is sent");
+}

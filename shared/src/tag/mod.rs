@@ -8,6 +8,7 @@
 //! | [`Value`] | a value of such a type; bytes, JSON and text, each in both directions |
 //! | [`TagData`] | what stands before the bytes of a value |
 //! | [`request`] | Read Tag, Write Tag and their relatives |
+//! | [`DataFields`] | the data of any other message, field by field |
 //! | [`View`] | how a person sees a number: scaled, with a unit, in words |
 //!
 //! Sources: Omron W506 8-4 to 8-7 (NJ/NX), pycomm3 (Logix), pylogix and libplctag (Micro800).
@@ -17,6 +18,7 @@ mod decode;
 mod dialect;
 mod elementary;
 mod encode;
+mod fields;
 mod kind;
 mod layout;
 mod name;
@@ -30,6 +32,7 @@ mod words;
 pub use self::data::{LOGIX_STRING, STRUCTURE, TagData, TagHead};
 pub use self::dialect::Dialect;
 pub use self::elementary::{Elementary, Form};
+pub use self::fields::{DataField, DataFields, FieldKind};
 pub use self::kind::{Dimension, Dimensions, Member, Place, Structure, Type};
 pub use self::layout::Layout;
 pub use self::name::{NameError, Step, TagName};

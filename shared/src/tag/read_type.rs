@@ -156,7 +156,7 @@ impl TypeReader<'_> {
                 if let Some(elementary) = Elementary::of_name(&word) {
                     Type::Elementary(elementary)
                 } else {
-                    let why = alloc::format!("{word:?} is neither a type nor a layout of this device");
+                    let why = alloc::format!("{word:?} is neither a type nor a layout that is known");
                     self.types.get(&word).cloned().ok_or(TypeError { why, ..begin })?
                 }
             }
@@ -317,7 +317,7 @@ mod tests {
         let refused = types.read("Pump").unwrap_err();
         assert_eq!(
             refused.to_string(),
-            r#""Pump" is neither a type nor a layout of this device at character 1"#
+            r#""Pump" is neither a type nor a layout that is known at character 1"#
         );
     }
 

@@ -16,7 +16,7 @@ use self::imports::{Import, Origin};
 const LAYERS: &[(&str, &[&str])] = &[
     ("wire", &[]),
     ("table", &["wire"]),
-    ("dissect", &["wire", "table"]),
+    ("dissect", &["wire", "table", "tag"]),
     ("config", &["wire", "tag::Display", "tag::Scale"]),
     (
         "tag",
@@ -40,6 +40,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "api",
         &[
             "config",
+            "dissect::Decoded",
             "plan",
             "table",
             "tag",

@@ -25,10 +25,7 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
     let row = &props.row;
     let status = &row.status;
     use_second(status.last.is_some());
-    let shown = status.last.as_ref().map(|last| (last.request.clone(), last.res_data.clone()));
-    let values = use_memo(shown, |shown| {
-        shown.as_ref().map_or_else(Vec::new, |(request, data)| decode(request, data))
-    });
+    let values = use_memo(status.last.clone(), |last| last.as_ref().map_or_else(Vec::new, decode));
     html! {
         <div class="outcome">
             <h2>
@@ -62,10 +59,15 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
     }
 }
 
-/// What `ResData` means: that follows from the request that it answers. It exists only after a success, so the
-/// reply around it is known.
-pub(crate) fn decode(request: &str, data: &str) -> Vec<Decoded> {
-    let (Ok(request), Ok(data)) = (read_hex(request), read_hex(data)) else { return Vec::new() };
+/// What `ResData` means: what the relay has read by the block's layout, otherwise that follows from the request that it
+/// answers. It exists only after a success, so the reply around it is known.
+pub(crate) fn decode(last: &LastSuccess) -> Vec<Decoded> {
+    if !last.decoded.is_empty() {
+        return last.decoded.clone();
+    }
+    let (Ok(request), Ok(data)) = (read_hex(&last.request), read_hex(&last.res_data)) else {
+        return Vec::new();
+    };
     let Ok(service) = MessageRouterRequest::decode(&request).map(|request| request.service()) else {
         return Vec::new();
     };
@@ -131,10 +133,19 @@ mod tests {
 
     #[test]
     fn the_data_of_a_success_is_decoded_by_its_request() {
-        let values = decode("0e03200124013007", "0443504831");
+        let last = |request: &str, data: &str| LastSuccess {
+            request: request.to_owned(),
+            res_data: data.to_owned(),
+            res_length: 0,
+            at: String::new(),
+            decoded: Vec::new(),
+        };
+        let values = decode(&last("0e03200124013007", "0443504831"));
         assert_eq!((values[0].text.as_str(), values[0].guess), ("CPH1", false));
-        assert!(decode("0e03200124013007", "").is_empty());
-        assert!(decode("", "00").is_empty());
+        assert!(decode(&last("0e03200124013007", "")).is_empty());
+        assert!(decode(&last("", "00")).is_empty());
+        let told = dissect::decode(&[0x0E, 0], &[0x8E, 0, 0, 0, 7]);
+        assert_eq!(decode(&LastSuccess { decoded: told.clone(), ..last("0e03200124013007", "00") }), told);
     }
 
     #[test]

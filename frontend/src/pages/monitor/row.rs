@@ -62,7 +62,7 @@ const REFUSED: u16 = 224;
 /// The newest good value on one line.
 fn value(row: &Row) -> String {
     let Some(last) = &row.status.last else { return String::new() };
-    let values = decode(&last.request, &last.res_data);
+    let values = decode(last);
     // Bytes are a fact; a guess needs more room than a line has.
     if values.iter().any(|value| value.guess) {
         return space_hex(&last.res_data);

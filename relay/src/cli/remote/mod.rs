@@ -43,7 +43,7 @@ impl Remote {
                 &"--pcap records what goes over the sockets of this machine: leave out --relay",
             );
         }
-        let (plan, findings) = MessagePlan::parse(config);
+        let (plan, findings) = MessagePlan::check(config);
         report::findings(&findings);
         let Some(plan) = plan else {
             if mode.json() {
@@ -110,7 +110,12 @@ async fn print(
 ) -> Result<(), Failed> {
     let bytes = |text: &str| read_hex(text).unwrap_or_default();
     let response = client.last_response(block).await?;
-    let report = Report::new(status, &bytes(&status.request), response.as_deref().map(bytes).as_deref());
+    let report = Report::new(
+        status,
+        &bytes(&status.request),
+        response.as_deref().map(bytes).as_deref(),
+        &block.config,
+    );
     show(&report, &block.config, mode, number);
     if let Some(written) = &status.written
         && let Some(read_back) = &written.read_back
