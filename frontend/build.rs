@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, env, fs, path::Path};
 fn main() {
     println!("cargo:rerun-if-changed=locales");
     let to = env::var_os("OUT_DIR").expect("cargo names a folder");
-    for name in ["page", "office"] {
+    for name in ["page", "office", "devices"] {
         let file = format!("locales/en/{name}.toml");
         let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
         let table: toml::Table = toml::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));

@@ -89,6 +89,7 @@ fn navigation(route: Route) -> Html {
                 { entry(Route::Monitor, tr!("nav.monitor")) }
                 { entry(Route::Connections, tr!("nav.connections")) }
                 { entry(Route::Help, tr!("nav.help")) }
+                <li><a href="/devices">{ tr!("nav.devices") }</a></li>
                 <li><a href="/office">{ tr!("nav.office") }</a></li>
             </ul>
         </nav>

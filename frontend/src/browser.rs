@@ -19,6 +19,12 @@ pub fn is_found(wanted: &str, config: &MsgCipGeneric) -> bool {
     [&config.name, &config.target_cfg.path].iter().any(|text| lower(text).includes(&wanted, 0))
 }
 
+/// Whether a text contains another one, in upper or lower case.
+pub fn contains(text: &str, wanted: &str) -> bool {
+    let lower = |text: &str| js_sys::JsString::from(text).to_lower_case();
+    lower(text).includes(&String::from(lower(wanted.trim())), 0)
+}
+
 /// The wall clock as RFC 3339.
 pub fn wall_clock() -> String {
     Date::new_0().to_iso_string().into()
@@ -49,6 +55,12 @@ pub fn local(ms: f64) -> String {
 /// ms since 1970 of a time in RFC 3339; no number for what is no time.
 pub fn ms_of(at: &str) -> f64 {
     Date::parse(at)
+}
+
+/// `07:36:12`: the time of day here of a time of [`now_ms`].
+pub fn clock(at_ms: f64) -> String {
+    let at = Date::now() - (now_ms() - at_ms);
+    Date::new(&at.into()).to_locale_time_string("en-GB").into()
 }
 
 /// So many ms from now as RFC 3339.
@@ -133,6 +145,13 @@ pub fn copy(text: &str, done: impl FnOnce(bool) + 'static) {
         };
         done(copied);
     });
+}
+
+/// The text of the file that somebody has chosen.
+pub async fn read_file(input: &web_sys::HtmlInputElement) -> Option<String> {
+    let file = input.files()?.get(0)?;
+    let text = js_sys::futures::JsFuture::from(file.text()).await.ok()?;
+    text.as_string()
 }
 
 /// Offers a function to scripts of this page, such as a test's.

@@ -11,12 +11,14 @@
 //! | [`kit`] | small components on native elements |
 //! | [`pages`] | what people see |
 //! | [`office`] | the second document: users, lists, audit, history |
+//! | [`devices`] | the third document: devices, groups, variables, their live values |
 
 pub mod access;
 pub mod address;
 pub mod app;
 pub mod browser;
 pub mod demo;
+pub mod devices;
 pub mod editor;
 pub mod frame_stats;
 pub mod hooks;
@@ -41,6 +43,12 @@ pub fn start() {
 pub fn start_office() {
     say_crashes();
     yew::Renderer::<office::Office>::new().render();
+}
+
+/// Puts the devices into the document's body.
+pub fn start_devices() {
+    say_crashes();
+    yew::Renderer::<devices::Devices>::new().render();
 }
 
 fn say_crashes() {

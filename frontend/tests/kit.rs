@@ -97,7 +97,7 @@ async fn a_thousand_rows_are_a_few_in_the_document() {
     let ids: Rc<[DeckId]> = (1..=1_000).map(DeckId::New).collect();
     let header = html! { <th>{ "Name" }</th> };
     let props = WindowTableProps { label: "Blocks".into(), ids, row_height: 32, header, row };
-    let root = render::<WindowTable>(props).await;
+    let root = render::<WindowTable<DeckId>>(props).await;
     let table = find(&root, "table");
     assert_eq!(table.get_attribute("aria-rowcount").as_deref(), Some("1001"), "the header counts");
     let rows = root.query_selector_all("tr[aria-rowindex]").unwrap().length();

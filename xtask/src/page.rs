@@ -26,8 +26,8 @@ pub(crate) struct Document {
     styles: &'static [&'static str],
 }
 
-/// Both documents.
-pub(crate) const DOCUMENTS: [Document; 2] = [
+/// All documents.
+pub(crate) const DOCUMENTS: [Document; 3] = [
     Document {
         name: "page",
         binary: "cipdeck-page",
@@ -39,6 +39,12 @@ pub(crate) const DOCUMENTS: [Document; 2] = [
         binary: "cipdeck-office",
         index: "office.html",
         styles: &["tokens", "base", "kit", "access", "office"],
+    },
+    Document {
+        name: "devices",
+        binary: "cipdeck-devices",
+        index: "devices.html",
+        styles: &["tokens", "base", "kit", "access", "office", "devices"],
     },
 ];
 
@@ -218,14 +224,14 @@ mod tests {
             index: r#"<link href="/styles.css"><link href="/icon.svg"><link href="/page.wasm"><link href="/page.js"><script src="/boot.js">"#.into(),
             boot: boot.into(),
             icon: "<svg/>".into(),
-            styles: ["tokens", "base", "kit", "access", "pages", "office"].map(|name| (name.into(), format!(".{name} {{}}"))).into(),
+            styles: ["tokens", "base", "kit", "access", "pages", "office", "devices"].map(|name| (name.into(), format!(".{name} {{}}"))).into(),
         }
     }
 
-    /// Both documents, with this as the module of the first.
+    /// All documents, with this as the module of the first.
     fn assembled(boot: &str, wasm: &[u8]) -> Result<Files> {
         let mut files = Files::new();
-        for (document, wasm) in DOCUMENTS.into_iter().zip([wasm, b"office"]) {
+        for (document, wasm) in DOCUMENTS.into_iter().zip([wasm, b"office", b"plants"]) {
             let bound = Bound {
                 wasm: wasm.to_vec(),
                 script: format!("export {{{}}}", document.name),
@@ -245,12 +251,12 @@ mod tests {
     #[test]
     fn every_file_that_a_document_names_exists_under_its_hashed_name() {
         let files = assembled(BOOT, b"\0asm").unwrap();
-        let [page, office] = DOCUMENTS.map(|document| index(&files, &document));
+        let indices = DOCUMENTS.map(|document| index(&files, &document));
         let named: Vec<_> = files.keys().filter(|name| !name.ends_with("html")).collect();
-        assert_eq!(named.len(), 9, "one icon for both: {named:?}");
+        assert_eq!(named.len(), 13, "one icon for all: {named:?}");
         for name in named {
             let quoted = format!("\"/{name}\"");
-            assert!(page.contains(&quoted) || office.contains(&quoted), "{name} is in no document");
+            assert!(indices.iter().any(|index| index.contains(&quoted)), "{name} is in no document");
         }
     }
 
@@ -263,6 +269,7 @@ mod tests {
         };
         assert!(sheet("page").ends_with(".access{}.pages{}"), "{}", sheet("page"));
         assert!(sheet("office").ends_with(".access{}.office{}"), "{}", sheet("office"));
+        assert!(sheet("devices").ends_with(".office{}.devices{}"), "{}", sheet("devices"));
     }
 
     #[test]
@@ -271,8 +278,8 @@ mod tests {
         let changed: Vec<_> = one.keys().filter(|name| !two.contains_key(*name)).collect();
         assert!(changed.iter().all(|name| name.starts_with("boot") || name.ends_with("wasm")), "{changed:?}");
         assert_eq!(changed.len(), 2);
-        let [page, office] = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
-        assert_eq!((page, office), (false, true));
+        let are_equal = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
+        assert_eq!(are_equal, [false, true, true]);
     }
 
     #[test]
@@ -281,7 +288,7 @@ mod tests {
         let before = files.len();
         zip(&mut files).unwrap();
         let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with("gz")).collect();
-        assert_eq!(zipped.len(), before - 3, "all but the documents and the icon");
+        assert_eq!(zipped.len(), before - 4, "all but the documents and the icon");
         assert!(zipped.iter().all(|(_, content)| content.starts_with(&[0x1F, 0x8B])));
     }
 

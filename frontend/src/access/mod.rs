@@ -1,4 +1,4 @@
-//! Who is here and what they may: seen in both documents.
+//! Who is here and what they may: seen in all documents.
 
 mod banner;
 mod refused;

@@ -36,7 +36,9 @@ fn used() -> BTreeSet<String> {
 fn every_key_that_the_page_uses_has_a_text() {
     let used = used();
     assert!(used.len() > 100, "only {} keys were found", used.len());
-    let has_text = |key: &String| try_text(key).is_some() || crate::office::has_text(key);
+    let has_text = |key: &String| {
+        try_text(key).is_some() || crate::office::has_text(key) || crate::devices::has_text(key)
+    };
     let missing: Vec<_> = used.iter().filter(|key| !has_text(key)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }

@@ -6,6 +6,7 @@ mod dialog;
 mod field;
 mod hex_view;
 mod number_field;
+mod scale;
 mod select_field;
 mod state;
 mod switch;
@@ -19,6 +20,7 @@ pub use self::{
     field::{describes, field_row},
     hex_view::HexView,
     number_field::{NumberFieldProps, number_field},
+    scale::{Scale, short},
     select_field::SelectField,
     state::{Shape, state_mark},
     switch::Switch,

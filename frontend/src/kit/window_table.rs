@@ -6,8 +6,6 @@ use wasm_bindgen::{JsCast, closure::Closure};
 use web_sys::{Element, HtmlElement, ResizeObserver};
 use yew::prelude::*;
 
-use crate::store::DeckId;
-
 /// Rows that are rendered above and below the visible ones.
 const OVERSCAN: usize = 8;
 
@@ -22,22 +20,22 @@ pub fn window(top: i32, height: i32, row_height: u32, count: usize) -> Range<usi
 
 /// A windowed table.
 #[derive(Clone, Debug, PartialEq, Properties)]
-pub struct WindowTableProps {
+pub struct WindowTableProps<Id: PartialEq> {
     /// What the table shows.
     pub label: AttrValue,
     /// All rows in order.
-    pub ids: Rc<[DeckId]>,
+    pub ids: Rc<[Id]>,
     /// Height of every row in px; the style sheet has to agree.
     pub row_height: u32,
     /// The header cells.
     pub header: Html,
     /// One row: its `aria-rowindex`, and which entry.
-    pub row: Callback<(usize, DeckId), Html>,
+    pub row: Callback<(usize, Id), Html>,
 }
 
 /// Scrolls by itself; gives the rows their places with two spacers.
 #[component]
-pub fn WindowTable(props: &WindowTableProps) -> Html {
+pub fn WindowTable<Id: Copy + PartialEq + 'static>(props: &WindowTableProps<Id>) -> Html {
     let view = use_node_ref();
     let (above, below) = (use_node_ref(), use_node_ref());
     let place = use_state_eq(|| (0, 0));

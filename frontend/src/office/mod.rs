@@ -20,7 +20,7 @@ pub mod kit;
 mod overview;
 mod passes;
 mod password;
-mod query;
+pub(crate) mod query;
 pub mod route;
 mod sessions;
 mod set_up;
@@ -83,6 +83,7 @@ pub fn Office() -> Html {
             <nav aria-label={tr!("office.elsewhere")}><ul>
                 <li><a href="/">{ tr!("office.to_workbench") }</a></li>
                 <li><a href="/monitor">{ tr!("nav.monitor") }</a></li>
+                <li><a href="/devices">{ tr!("nav.devices") }</a></li>
             </ul></nav>
             { who(view.as_deref().filter(|_| page != Page::SignIn), writing.state.read_only) }
             <ThemeToggle />
@@ -139,6 +140,11 @@ fn not_found() -> Html {
             <p>{ link(Page::Overview, "", html! { tr!("office.to_overview") }) }</p>
         </div>
     }
+}
+
+/// A text of the office, for the document that uses its parts.
+pub(crate) fn text(key: &'static str) -> AttrValue {
+    i18n::text(key)
 }
 
 /// Whether the office has a text for a key.

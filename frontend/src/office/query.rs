@@ -1,7 +1,7 @@
 //! What is behind the question mark of a request.
 
 /// `?event=run&from=2026-11-22`: only what is not empty.
-pub(super) fn query(pairs: &[(&str, &str)]) -> String {
+pub(crate) fn query(pairs: &[(&str, &str)]) -> String {
     let mut text = String::new();
     for (name, value) in pairs.iter().filter(|(_, value)| !value.is_empty()) {
         text.push(if text.is_empty() { '?' } else { '&' });

@@ -52,7 +52,7 @@ pub(super) fn StaleNote(props: &StaleNoteProps) -> Html {
     html! { <p class="warning-text" data-test="stale">{ tr!("link.stale", age = age) }</p> }
 }
 
-fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
+pub(crate) fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
     match link {
         Link::Connecting => ("connecting", Shape::Half, tr!("link.connecting")),
         Link::Online { latency_ms: None } => ("online", Shape::Dot, tr!("link.online")),

@@ -65,6 +65,11 @@ impl<K: Ord, V> Shelf<K, V> {
         self.0.iter().map(|(key, value)| (key, value))
     }
 
+    /// All, in the order of their keys, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (&K, &mut V)> {
+        self.0.iter_mut().map(|(key, value)| (&*key, value))
+    }
+
     /// The keys in order.
     pub fn keys(&self) -> impl Iterator<Item = &K> {
         self.0.iter().map(|(key, _)| key)

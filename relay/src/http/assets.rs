@@ -11,7 +11,7 @@ use crate::error::ApiError;
 #[allow_missing = true]
 struct Page;
 
-/// A file of the page; for every address without a file ending one of the two documents, which know their own routes.
+/// A file of the page; for every address without a file ending one of the documents, which know their own routes.
 pub(crate) async fn show(method: Method, uri: Uri, headers: HeaderMap) -> Response {
     let path = uri.path().trim_start_matches('/');
     if !matches!(method, Method::GET | Method::HEAD) {
@@ -32,12 +32,13 @@ pub(crate) async fn show(method: Method, uri: Uri, headers: HeaderMap) -> Respon
     }
 }
 
-/// The document of an address, if it is not that of a file: the office, or the workbench.
+/// The document of an address, if it is not that of a file: the office, the devices, or the workbench.
 fn document(path: &str) -> Option<&'static str> {
     let (first, last) = (path.split('/').next(), path.rsplit('/').next());
     match (first, last) {
         (_, Some(name)) if name.contains('.') => None,
         (Some("office"), _) => Some("office.html"),
+        (Some("devices"), _) => Some("devices.html"),
         _ => Some("index.html"),
     }
 }
@@ -91,11 +92,14 @@ mod tests {
 
     #[test]
     fn an_address_is_that_of_a_document_or_of_a_file() {
-        for path in ["", "monitor", "deck/b7", "officer", "deck/office"] {
+        for path in ["", "monitor", "deck/b7", "officer", "deck/office", "deck/devices"] {
             assert_eq!(document(path), Some("index.html"), "{path}");
         }
         for path in ["office", "office/", "office/sign-in", "office/history/b7"] {
             assert_eq!(document(path), Some("office.html"), "{path}");
+        }
+        for path in ["devices", "devices/", "devices/d1", "devices/g12/trend"] {
+            assert_eq!(document(path), Some("devices.html"), "{path}");
         }
         for path in ["icon.svg", "office/page.js", "snippets/gloo-0123/inline0.js"] {
             assert_eq!(document(path), None, "{path}");

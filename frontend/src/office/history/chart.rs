@@ -4,8 +4,11 @@
 use cipdeck_shared::api::{HistoryRange, HistoryTrend};
 use yew::prelude::*;
 
-use super::scale::{Scale, short};
-use crate::{browser, office::i18n::tr};
+use crate::{
+    browser,
+    kit::{Scale, short},
+    office::i18n::tr,
+};
 
 /// Width of the drawing; it is stretched to its place.
 pub(super) const WIDTH: f64 = 720.0;

@@ -5,11 +5,11 @@ use yew::prelude::*;
 
 use super::{
     chart::{Line, chart},
-    scale::short,
     strip::strip,
 };
 use crate::{
     browser,
+    kit::short,
     office::{
         i18n::tr,
         kit::{choice, note},

@@ -5,7 +5,6 @@ mod charts;
 mod dropped;
 mod filter;
 mod run;
-mod scale;
 mod state;
 mod strip;
 

@@ -67,7 +67,7 @@ pub fn MonitorPage() -> Html {
             if shown.is_empty() {
                 <p class="empty">{ tr!("monitor.empty") }</p>
             } else {
-                <WindowTable label={tr!("monitor.label")} ids={(*shown).clone()} row_height={ROW_HEIGHT} {header} {row} />
+                <WindowTable<DeckId> label={tr!("monitor.label")} ids={(*shown).clone()} row_height={ROW_HEIGHT} {header} {row} />
             }
         </section>
     }

@@ -2,7 +2,7 @@
 
 /// From the smallest to the biggest number, along some length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub struct Scale {
     low: f64,
     high: f64,
     length: f64,
@@ -10,7 +10,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Covers these numbers, with a little room; a single number gets a range around it.
-    pub(super) fn covering(numbers: impl Iterator<Item = f64>, length: f64) -> Option<Self> {
+    pub fn covering(numbers: impl Iterator<Item = f64>, length: f64) -> Option<Self> {
         let (low, high) = numbers
             .filter(|number| number.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| {
@@ -26,12 +26,12 @@ impl Scale {
     }
 
     /// The place of a number, from the end: paper counts downwards.
-    pub(super) fn down(&self, number: f64) -> f64 {
+    pub fn down(&self, number: f64) -> f64 {
         self.length - (number - self.low) / (self.high - self.low) * self.length
     }
 
     /// Round numbers inside, about as many as asked for.
-    pub(super) fn ticks(&self, about: u32) -> Vec<f64> {
+    pub fn ticks(&self, about: u32) -> Vec<f64> {
         let rough = (self.high - self.low) / f64::from(about.max(1));
         let magnitude = 10_f64.powf(rough.log10().floor());
         let step =
@@ -47,7 +47,7 @@ impl Scale {
 const MOST_TICKS: u32 = 12;
 
 /// A number as short as it can be read: `0.05`, `1200`, `1.2e9`.
-pub(super) fn short(number: f64) -> String {
+pub fn short(number: f64) -> String {
     match number.abs() {
         0.0 => "0".to_owned(),
         0.001..1e7 => {

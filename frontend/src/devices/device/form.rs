@@ -1,0 +1,106 @@
+//! What people enter about a device.
+
+use cipdeck_shared::config::{Connecting, Device, Profile};
+use yew::prelude::*;
+
+use super::draft::{DeviceDraft, DeviceProblems};
+use crate::{
+    devices::{
+        api,
+        fields::{Findings, Said, area, bound, text},
+        i18n::tr,
+        route::{self, Page},
+    },
+    office::{
+        fetch::use_action,
+        kit::{choice, problem_note},
+    },
+};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct DeviceFormProps {
+    /// The device that is changed; without one a new one is made.
+    pub(super) stored: Option<Device>,
+    /// What the form begins with.
+    pub(super) draft: DeviceDraft,
+}
+
+/// Name, site, path, kind, connection and limits. A new device is gone to; a changed one comes back from the relay.
+#[component]
+pub(super) fn DeviceForm(props: &DeviceFormProps) -> Html {
+    let action = use_action();
+    let draft = use_state(|| props.draft.clone());
+    let tried = use_state(|| false);
+    let read = draft.read();
+    let wrong = read.as_ref().err().filter(|_| *tried).cloned().unwrap_or_default();
+    let onsubmit = {
+        let (action, tried, stored) = (action.clone(), tried.clone(), props.stored.clone());
+        move |event: SubmitEvent| {
+            event.prevent_default();
+            tried.set(true);
+            match (&read, &stored) {
+                (Ok(config), Some(old)) => {
+                    action.go(api::change_device(old.id, old.revision, config.clone()), |_| {});
+                }
+                (Ok(config), None) => {
+                    action.go(api::add_device(config.clone()), |device| route::go(Page::Device(device.id)));
+                }
+                (Err(_), _) => {}
+            }
+        }
+    };
+    let is_changed = *draft != props.draft || props.stored.is_none();
+    let words = if props.stored.is_some() { tr!("form.store") } else { tr!("device.add") };
+    html! {
+        <form class="grid-form" {onsubmit} data-test="device-form">
+            { fields(&draft, &wrong, &Findings::of(action.problem())) }
+            { problem_note(action.problem().as_ref()) }
+            <button type="submit" class="button primary" disabled={action.is_busy() || !is_changed} data-test="store-device">{ words }</button>
+        </form>
+    }
+}
+
+/// The members that have a field here.
+const FIELDS: [&str; 8] =
+    ["name", "site", "path", "profile", "connection", "timeout_ms", "max_requests_per_s", "types"];
+
+fn fields(draft: &UseStateHandle<DeviceDraft>, wrong: &DeviceProblems, findings: &Findings) -> Html {
+    let (profile, on_profile) = bound(draft, |draft| &mut draft.profile);
+    let (connection, on_connection) = bound(draft, |draft| &mut draft.connection);
+    let (types, on_types) = bound(draft, |draft| &mut draft.types);
+    let profiles = Profile::ALL.map(|profile| (profile.word().into(), profile_words(profile)));
+    let connections = Connecting::ALL.map(|it| (it.word().into(), connection_words(it)));
+    let said = |wrong: &Option<AttrValue>, field: &str| wrong.clone().or_else(|| findings.at(field));
+    html! { <>
+        { text(draft, "device-name", tr!("device.name"), |draft| &mut draft.name).problem(said(&wrong.name, "name")).draw() }
+        { text(draft, "device-site", tr!("device.site"), |draft| &mut draft.site).hint(tr!("device.site_hint")).problem(findings.at("site")).draw() }
+        { text(draft, "device-path", tr!("device.path"), |draft| &mut draft.path).hint(tr!("device.path_hint")).problem(said(&wrong.path, "path")).draw() }
+        { choice("device-profile", tr!("device.profile"), &profile, &profiles, on_profile) }
+        { choice("device-connection", tr!("device.connection"), &connection, &connections, on_connection) }
+        { text(draft, "device-timeout", tr!("device.timeout"), |draft| &mut draft.timeout).problem(said(&wrong.timeout, "timeout_ms")).draw() }
+        { text(draft, "device-limit", tr!("device.limit"), |draft| &mut draft.limit).hint(tr!("device.limit_hint")).problem(said(&wrong.limit, "max_requests_per_s")).draw() }
+        <details class="field-more" open={wrong.types.is_some() || findings.at("types").is_some()}>
+            <summary>{ tr!("device.types") }</summary>
+            { area("device-types", tr!("device.types_label"), 3, &types, Said::of(said(&wrong.types, "types"), tr!("device.types_hint")), on_types) }
+        </details>
+        { findings.elsewhere(&FIELDS) }
+    </> }
+}
+
+fn profile_words(profile: Profile) -> AttrValue {
+    match profile {
+        Profile::Auto => tr!("kind.auto"),
+        Profile::Generic => tr!("kind.generic"),
+        Profile::Micro800 => tr!("kind.micro800"),
+        Profile::Logix => tr!("kind.logix"),
+        Profile::Omron => tr!("kind.omron"),
+    }
+}
+
+fn connection_words(connecting: Connecting) -> AttrValue {
+    match connecting {
+        Connecting::Auto => tr!("connecting.auto"),
+        Connecting::Unconnected => tr!("connecting.unconnected"),
+        Connecting::Connected => tr!("connecting.connected"),
+    }
+}

@@ -1,0 +1,17 @@
+//! What the relay says of the devices, as it says it.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`values`] | the newest value of each variable |
+//! | [`plant`] | the tree, what the devices say of themselves, and the connection to the relay |
+//! | [`hooks`] | how components learn of it |
+
+mod hooks;
+mod plant;
+mod values;
+
+pub use self::{
+    hooks::{use_device_status, use_frames, use_plant, use_tree, use_value, use_watched},
+    plant::{Plant, Tree},
+    values::{Shown, ValueStore},
+};

@@ -1,0 +1,183 @@
+//! Changing a value: what is there, what will be, the window, the ticket, and what became of it.
+
+mod outcome;
+mod window;
+
+use std::rc::Rc;
+
+use cipdeck_shared::{
+    api::{VariableWritten, WriteTicket},
+    config::{Device, Variable, space_hex},
+};
+use yew::prelude::*;
+
+use self::{outcome::outcome, window::OpenWindow};
+use super::{
+    api,
+    fields::Findings,
+    i18n::tr,
+    live::{use_plant, use_value},
+};
+use crate::{
+    browser,
+    hooks::use_second,
+    kit::Dialog,
+    office::{
+        check,
+        fetch::use_action,
+        kit::{Entry, problem_note},
+    },
+    pages::block::whole,
+};
+
+#[derive(Clone, PartialEq, Properties)]
+pub(super) struct WriteDialogProps {
+    pub(super) variable: Variable,
+    /// With those of its parents.
+    pub(super) address: String,
+    pub(super) device: Device,
+    pub(super) on_close: Callback<()>,
+}
+
+/// What the relay offers, and until when, in ms of [`browser::now_ms`].
+type Offer = Option<(Rc<WriteTicket>, f64)>;
+
+/// Three steps: another value, old and new, the result. Without an open window the window first.
+#[component]
+pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
+    let plant = use_plant();
+    use_second(true);
+    let now = use_value(props.variable.id);
+    let (asking, writing) = (use_action(), use_action());
+    let typed = use_state(String::new);
+    let (offer, done) = (use_state(|| Offer::None), use_state(|| None::<Rc<VariableWritten>>));
+    let config = &props.variable.config;
+    let title = tr!("write_value.title", name = config.name);
+    let on_close = props.on_close.clone();
+    let cancel = on_close.reform(|_: MouseEvent| ());
+    if let Some(done) = &*done {
+        return html! { <Dialog {title} test="write-result" {on_close}>{ outcome(done, cancel) }</Dialog> };
+    }
+    if plant.writing().state.window.is_none() {
+        return html! { <Dialog title={tr!("window.title")} test="window-dialog" {on_close}><OpenWindow on_close={cancel} /></Dialog> };
+    }
+    let on_ask = {
+        let (asking, typed, offer, id) = (asking.clone(), typed.clone(), offer.clone(), props.variable.id);
+        Callback::from(move |event: SubmitEvent| {
+            event.prevent_default();
+            let offer = offer.clone();
+            if check::needed(&typed).is_none() {
+                asking.go(api::offer(id, typed.trim().to_owned()), move |ticket: WriteTicket| {
+                    #[expect(clippy::cast_precision_loss, reason = "a minute or so")]
+                    let ends_ms = browser::now_ms() + ticket.good_for_ms as f64;
+                    offer.set(Some((Rc::new(ticket), ends_ms)));
+                });
+            }
+        })
+    };
+    if let Some((ticket, ends_ms)) = &*offer {
+        let on_write = {
+            let (writing, ticket, id, done) =
+                (writing.clone(), ticket.clone(), props.variable.id, done.clone());
+            move |event: SubmitEvent| {
+                event.prevent_default();
+                let done = done.clone();
+                writing.go(api::write(id, ticket.ticket.clone()), move |written| {
+                    done.set(Some(Rc::new(written)));
+                });
+            }
+        };
+        let back = {
+            let offer = offer.clone();
+            move |_: MouseEvent| offer.set(None)
+        };
+        let left_ms = *ends_ms - browser::now_ms();
+        return html! {
+            <Dialog {title} test="write-dialog" {on_close}>
+                <form onsubmit={on_write}>
+                    { change(props, ticket) }
+                    if left_ms > 0.0 {
+                        <p class="hint" data-test="write-left">{ tr!("write.left", seconds = whole(left_ms / 1_000.0)) }</p>
+                    } else {
+                        <p class="finding error" role="alert">{ tr!("write.late") }</p>
+                    }
+                    { problem_note(writing.problem().as_ref()) }
+                    <div class="dialog-buttons">
+                        <button type="button" class="button" autofocus=true onclick={cancel} data-test="write-cancel">{ tr!("dialog.cancel") }</button>
+                        <button type="button" class="button" onclick={back}>{ tr!("write_value.other") }</button>
+                        <button type="submit" class="button danger" disabled={writing.is_busy() || left_ms <= 0.0} data-test="write-confirm">{ tr!("write.do") }</button>
+                    </div>
+                </form>
+            </Dialog>
+        };
+    }
+    let findings = Findings::of(asking.problem());
+    let unit = if config.unit.is_empty() {
+        tr!("write_value.new")
+    } else {
+        tr!("write_value.new_unit", unit = config.unit)
+    };
+    html! {
+        <Dialog {title} test="value-dialog" {on_close}>
+            <form onsubmit={on_ask}>
+                <dl class="facts">
+                    <dt>{ tr!("write_value.where") }</dt><dd class="mono">{ &props.address }{ " @ " }{ &props.device.config.path }</dd>
+                    <dt>{ tr!("write_value.now") }</dt><dd data-test="value-now">{ now.map(|now| now.value.text.clone()).unwrap_or_default() }</dd>
+                </dl>
+                { Entry::text("new-value", unit, &typed).hint(range(&props.variable)).problem(findings.at("text")).draw() }
+                { choices(&props.variable, &typed) }
+                { findings.elsewhere(&["text"]) }
+                { problem_note(asking.problem().as_ref()) }
+                <div class="dialog-buttons">
+                    <button type="button" class="button" onclick={cancel}>{ tr!("dialog.cancel") }</button>
+                    <button type="submit" class="button primary" disabled={asking.is_busy() || typed.trim().is_empty()} data-test="write-ask">{ tr!("write_value.ask") }</button>
+                </div>
+            </form>
+        </Dialog>
+    }
+}
+
+/// What may be typed.
+fn range(variable: &Variable) -> AttrValue {
+    let config = &variable.config;
+    match (config.min, config.max) {
+        (Some(min), Some(max)) => tr!("write_value.between", min = min, max = max),
+        (Some(min), None) => tr!("write_value.at_least", min = min),
+        (None, Some(max)) => tr!("write_value.at_most", max = max),
+        (None, None) => tr!("write_value.hint"),
+    }
+}
+
+/// The words for numbers, to be clicked.
+fn choices(variable: &Variable, typed: &UseStateHandle<String>) -> Html {
+    let button = |text: &String| {
+        let (set, text) = (typed.setter(), text.clone());
+        let words = text.clone();
+        html! { <button type="button" class="button" onclick={move |_: MouseEvent| set.set(text.clone())}>{ words }</button> }
+    };
+    let choices = &variable.config.choices;
+    html! {
+        if !choices.is_empty() {
+            <div class="choices">{ for choices.iter().map(|choice| button(&choice.text)) }</div>
+        }
+    }
+}
+
+/// Old and new, in units, and the bytes that go out.
+fn change(props: &WriteDialogProps, ticket: &WriteTicket) -> Html {
+    let old = ticket.old.as_ref().map_or_else(
+        || html! { <span class="quiet">{ tr!("write.no_old", why = ticket.no_old.as_deref().unwrap_or_default()) }</span> },
+        |old| html! { &old.text },
+    );
+    html! { <>
+        <p class="old-new">
+            <span class="old" data-test="write-old">{ old }</span>
+            <span aria-hidden="true">{ "→" }</span><span class="unseen">{ tr!("write_value.becomes") }</span>
+            <b class="new" data-test="write-new">{ ticket.new.as_ref().map(|new| new.text.clone()).unwrap_or_default() }</b>
+        </p>
+        <dl class="facts">
+            <dt>{ tr!("write_value.where") }</dt><dd class="mono">{ &props.address }{ " @ " }{ &props.device.config.path }</dd>
+            <dt>{ tr!("write.bytes") }</dt><dd class="mono" data-test="write-bytes">{ space_hex(&ticket.request).to_ascii_uppercase() }</dd>
+        </dl>
+    </> }
+}
