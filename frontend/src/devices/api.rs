@@ -2,11 +2,12 @@
 
 use cipdeck_shared::{
     api::{
-        BrowseRequest, CopyDevice, DiscoverRequest, Discovered, NewValue, NewVariable, NewVariables,
-        VariableWritten, VariablesCsv, WriteTicket, WriteVariable,
+        BrowseRequest, CopyDevice, DiscoverRequest, Discovered, NewValue, NewVariables, VariableWritten,
+        VariablesCsv, WriteTicket, WriteVariable,
     },
     config::{
-        Device, DeviceConfig, DeviceId, Group, GroupConfig, GroupId, Variable, VariableConfig, VariableId,
+        Device, DeviceConfig, DeviceId, Group, GroupConfig, GroupId, NewVariable, Variable, VariableConfig,
+        VariableId,
     },
 };
 use gloo_net::http::Method;

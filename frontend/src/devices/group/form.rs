@@ -2,10 +2,7 @@
 
 use std::rc::Rc;
 
-use cipdeck_shared::{
-    api::NewVariable,
-    config::{Device, GroupId, Variable, VariableId, join_address},
-};
+use cipdeck_shared::config::{Device, GroupId, NewVariable, Variable, VariableId, join_address};
 use yew::prelude::*;
 
 use super::{asked::Asked, draft::VariableDraft, lines::Lines};

@@ -1,6 +1,6 @@
 //! Lines of a spreadsheet or of a CSV file as variables, with what is wrong with each.
 
-use cipdeck_shared::{api::NewVariable, config::join_address};
+use cipdeck_shared::config::{NewVariable, join_address};
 use yew::AttrValue;
 
 use super::draft::{VariableDraft, Wrong};

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use cipdeck_shared::{
-    api::{BrowsedSymbol, NewVariable},
-    config::{VariableConfig, join_address},
+    api::BrowsedSymbol,
+    config::{NewVariable, VariableConfig, join_address},
 };
 
 use super::{Ticked, listing::Listing};
