@@ -19,6 +19,7 @@ mod event;
 mod failure;
 mod machine;
 mod matching;
+pub mod poll;
 mod session;
 mod status;
 mod target;

@@ -98,6 +98,13 @@ impl TagName {
         alloc::format!("{whole}{dot}{part}").parse()
     }
 
+    /// What this is a part of; `None` for a tag itself.
+    #[must_use]
+    pub fn parent(&self) -> Option<Self> {
+        let (_, steps) = self.steps.split_last()?;
+        (!steps.is_empty()).then(|| Self { steps: steps.to_vec(), bit: None })
+    }
+
     /// The same with one element's indices behind it.
     #[must_use]
     pub fn element(&self, indices: Vec<u32>) -> Self {
