@@ -95,7 +95,7 @@ fn listening_at(line: &str) -> Option<String> {
     if !line.starts_with("cipdeck ") {
         return None; // the log has the address, too, before the relay answers
     }
-    let rest = &line[line.find("127.0.0.1:")?..];
+    let rest = &line[line.find("127.")?..];
     let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ':')).unwrap_or(rest.len());
     Some(rest[..end].to_string())
 }

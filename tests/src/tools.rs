@@ -24,6 +24,16 @@ pub fn cpppo_python() -> PathBuf {
     })
 }
 
+/// A Python that has the packages pycomm3, pylogix and aphyt: `CIPDECK_TAGS_PYTHON`.
+pub fn tags_python() -> PathBuf {
+    existing(named("CIPDECK_TAGS_PYTHON")).unwrap_or_else(|| {
+        panic!(
+            "pycomm3, pylogix and aphyt are missing: run `python3 -m venv VENV && VENV/bin/pip install pycomm3 pylogix \
+             aphyt`, and set CIPDECK_TAGS_PYTHON=VENV/bin/python; {HINT}"
+        )
+    })
+}
+
 /// The program schemathesis: `CIPDECK_SCHEMATHESIS`, otherwise `schemathesis` in the search path.
 pub fn schemathesis() -> PathBuf {
     existing(named("CIPDECK_SCHEMATHESIS").or_else(|| search("schemathesis"))).unwrap_or_else(|| {

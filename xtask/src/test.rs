@@ -71,6 +71,7 @@ fn journeys(tools: &TestTools, long: bool) -> Result<()> {
         .env("CIPDECK_CHROMEDRIVER", &tools.chromedriver)
         .env("CIPDECK_CPPPO_PYTHON", &tools.cpppo_python)
         .env("CIPDECK_SCHEMATHESIS", &tools.schemathesis)
+        .env("CIPDECK_TAGS_PYTHON", &tools.tags_python)
         .env("CIPDECK_TSHARK", &tools.tshark)
         .env("CIPDECK_SCREENSHOTS", workspace::target().join("screenshots")))
 }

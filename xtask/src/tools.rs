@@ -26,6 +26,8 @@ pub(crate) struct TestTools {
     pub(crate) cpppo_python: PathBuf,
     /// The program that asks an HTTP interface what its description promises.
     pub(crate) schemathesis: PathBuf,
+    /// A Python that can import the clients of tags.
+    pub(crate) tags_python: PathBuf,
     /// Wireshark's command line.
     pub(crate) tshark: PathBuf,
 }
@@ -39,14 +41,17 @@ pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestToo
     report.step("tool: wasm-pack", || install("wasm-pack", WASM_PACK, &["--locked"]))?;
     let chromedriver = report.step("tool: Chromium and its driver", || browser(consent))?;
     let cpppo_python =
-        report.step("tool: cpppo, a target that is not ours", || python_with(consent, "cpppo", CPPPO))?;
+        report.step("tool: cpppo, a target that is not ours", || python_with(consent, "cpppo", &[CPPPO]))?;
     let schemathesis = report.step("tool: schemathesis, a reader of OpenAPI that is not ours", || {
-        let python = python_with(consent, "schemathesis", SCHEMATHESIS)?;
+        let python = python_with(consent, "schemathesis", &[SCHEMATHESIS])?;
         Ok(python.with_file_name(format!("schemathesis{}", env::consts::EXE_SUFFIX)))
+    })?;
+    let tags_python = report.step("tool: pycomm3, pylogix and aphyt, clients that are not ours", || {
+        python_with(consent, "tags", TAG_CLIENTS)
     })?;
     let tshark = report.step("tool: tshark, a reader of captures that is not ours", || tshark(consent))?;
     report.step("tool: ip, openssl and curl, callers that are not ours", || callers(consent))?;
-    Ok(TestTools { chromedriver, cpppo_python, schemathesis, tshark })
+    Ok(TestTools { chromedriver, cpppo_python, schemathesis, tags_python, tshark })
 }
 
 /// Installs cargo-deny if it is missing.
@@ -125,25 +130,31 @@ fn callers(consent: Consent) -> Result<()> {
     Ok(())
 }
 
-/// A Python environment of our own that holds a package in this version.
-fn python_with(consent: Consent, package: &str, wanted: &str) -> Result<PathBuf> {
-    let venv = folder().join(format!("{package}-venv"));
+/// A Python environment of our own that holds packages in these versions.
+fn python_with(consent: Consent, name: &str, wanted: &[(&str, &str)]) -> Result<PathBuf> {
+    let venv = folder().join(format!("{name}-venv"));
     let python =
         if cfg!(windows) { venv.join("Scripts").join("python.exe") } else { venv.join("bin").join("python") };
-    let script = format!("from importlib.metadata import version; print(version({package:?}))");
-    let version = || read(program(&python).args(["-c", &script]));
-    if !version().is_ok_and(|version| version == wanted) {
+    let version = |package: &str| {
+        let script = format!("from importlib.metadata import version; print(version({package:?}))");
+        read(program(&python).args(["-c", &script]))
+    };
+    let is_there =
+        |(package, wanted): &(&str, &str)| version(package).is_ok_and(|version| version == *wanted);
+    if !wanted.iter().all(is_there) {
         if system::is_debian() {
-            system::install(consent, &["python3", "python3-venv"], package)?;
+            system::install(consent, &["python3", "python3-venv"], name)?;
         }
         run(program(system_python()?).args(["-m", "venv", "--clear"]).arg(&venv))?;
         run(program(&python)
             .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
-            .arg(format!("{package}=={wanted}")))?;
+            .args(wanted.iter().map(|(package, wanted)| format!("{package}=={wanted}"))))?;
     }
-    match version()? {
-        version if version == wanted => println!("    {package} {version}"),
-        other => bail!("{package} {other} was installed instead of {wanted}"),
+    for (package, wanted) in wanted {
+        match version(package)? {
+            version if version == *wanted => println!("    {package} {version}"),
+            other => bail!("{package} {other} was installed instead of {wanted}"),
+        }
     }
     Ok(python)
 }
@@ -176,5 +187,6 @@ fn folder() -> PathBuf {
 const WASM_PACK: &str = "0.15.1";
 const CARGO_DENY: &str = "0.20.2";
 const CARGO_FUZZ: &str = "0.13.1";
-const CPPPO: &str = "5.2.5";
-const SCHEMATHESIS: &str = "4.32.5";
+const CPPPO: (&str, &str) = ("cpppo", "5.2.5");
+const SCHEMATHESIS: (&str, &str) = ("schemathesis", "4.32.5");
+const TAG_CLIENTS: &[(&str, &str)] = &[("pycomm3", "1.2.16"), ("pylogix", "1.1.6"), ("aphyt", "0.1.30")];

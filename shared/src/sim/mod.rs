@@ -44,6 +44,13 @@
 //! | 42 | deceleration time | INT, 0.01 s | writable, 1000 at first |
 //! | 43 | speed reference | REAL, Hz | writable, 30.0 at first |
 //!
+//! # Controllers
+//!
+//! A [profile](SimProfile) makes it a Logix, a Micro800 or an Omron NX: [`SimProfile::config`] has identity, sizes and the
+//! usual [tags](TagMemory). Tags are pieces of memory, laid out as the family does; they are read and written by name and
+//! told by the objects that the family has for it. `docs/SIMULATOR.md` has the tables: services, refusals, what is guessed.
+//! A program that makes no controller carries no code of one: [`Tags`] are behind a pointer.
+//!
 //! # Routes
 //!
 //! Unconnected_Send and Forward_Open follow their path one hop after the other, as bridges do. Where it does not lead on,

@@ -32,6 +32,7 @@ mod secrets;
 mod security_model;
 mod shutdown;
 mod slow_viewer;
+mod tag_clients;
 mod tls;
 mod websocket;
 mod who;
