@@ -13,6 +13,7 @@ pub mod command;
 pub mod fake_plc;
 pub mod frame;
 pub mod gateway;
+pub mod live;
 pub mod managed;
 pub mod measure;
 pub mod namespace;

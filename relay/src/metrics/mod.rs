@@ -33,6 +33,8 @@ pub(crate) struct Metrics {
     requests: Family<Request, Counter>,
     events: Family<One, Counter>,
     unseated: Counter,
+    polls: Counter,
+    values: Counter,
 }
 
 /// Upper ends of the reply times in seconds, from a device on the next port to the longest timeout.
@@ -49,6 +51,8 @@ impl Default for Metrics {
             requests: Family::default(),
             events: Family::default(),
             unseated: Counter::default(),
+            polls: Counter::default(),
+            values: Counter::default(),
         }
     }
 }
@@ -88,6 +92,16 @@ impl Metrics {
     /// Something was recorded, or should have been.
     pub(crate) fn event(&self, event: Event) {
         self.events.get_or_create(&[("event", event.word())]).inc();
+    }
+
+    /// A device was asked for values of variables.
+    pub(crate) fn poll(&self) {
+        self.polls.inc();
+    }
+
+    /// So many variables have another value, quality or time.
+    pub(crate) fn values(&self, count: usize) {
+        self.values.inc_by(count as u64);
     }
 
     /// A connection was closed because there are too many.

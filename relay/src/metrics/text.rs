@@ -65,6 +65,12 @@ impl Metrics {
             "Connections that were closed because there were too many",
             self.unseated.clone(),
         );
+        registry.register("polls", "Requests for values of variables", self.polls.clone());
+        registry.register(
+            "values",
+            "Times that a variable got another value, quality or time",
+            self.values.clone(),
+        );
     }
 }
 

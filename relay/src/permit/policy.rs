@@ -69,6 +69,11 @@ impl Policy {
         }
     }
 
+    /// What one target gets at most; 0 = no limit.
+    pub(crate) const fn messages_per_second(&self) -> u32 {
+        self.rate.limit()
+    }
+
     /// Changes when the write state has changed.
     pub(crate) fn watch(&self) -> watch::Receiver<u64> {
         self.version.subscribe()

@@ -28,6 +28,11 @@ impl Rate {
         Self { limit, seconds: Mutex::default() }
     }
 
+    /// Messages per second and target; 0 = no limit.
+    pub(super) const fn limit(&self) -> u32 {
+        self.limit
+    }
+
     /// One more message.
     pub(super) fn take(&self, target: &Target, now: Instant) -> Result<(), Denied> {
         if self.limit == 0 || *target == Target::BuiltIn {

@@ -3,24 +3,29 @@
 
 mod edit;
 mod entries;
+mod health;
 mod hub;
 mod point;
+mod poll;
 mod work;
 
+use std::collections::BTreeMap;
 use std::future::Future;
 use std::sync::{Arc, Mutex};
 
 use cipdeck_shared::api::{DeviceStatus, GroupValues, Tree, WriteEntry};
 use cipdeck_shared::config::{Device, DeviceId, GroupId, Variable};
 use cipdeck_shared::plan::plant;
+use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 use self::entries::Entries;
 pub(crate) use self::hub::{Hub, Seen};
+use self::poll::Work;
 use crate::error::ApiError;
 use crate::permit::Policy;
-use crate::runner::{Runner, lock};
+use crate::runner::{Clock, Runner, lock};
 use crate::store::{Store, StoreError};
 
 /// All devices. Clones share them.
@@ -36,6 +41,9 @@ struct Inner {
     entries: Mutex<Entries>,
     /// Held from the store to the viewers, so that everybody sees changes in the order in which they were stored.
     edit: tokio::sync::Mutex<()>,
+    /// What the task of each device has to do.
+    polls: Mutex<BTreeMap<DeviceId, watch::Sender<Arc<Work>>>>,
+    clock: Clock,
     tasks: TaskTracker,
     stop: CancellationToken,
 }
@@ -54,6 +62,8 @@ impl Plant {
             hub: Arc::default(),
             entries: Mutex::new(entries),
             edit: tokio::sync::Mutex::default(),
+            polls: Mutex::default(),
+            clock: Clock::start(),
             tasks: TaskTracker::new(),
             stop: CancellationToken::new(),
         };

@@ -17,6 +17,7 @@ mod half_requests;
 mod history;
 mod late_reply;
 mod limits;
+mod live;
 mod logs;
 mod network;
 mod peers;

@@ -42,7 +42,7 @@ pub const MAX_ADDED: usize = 5_000;
 pub const MAX_IN_GROUP: usize = 10_000;
 
 /// A device that can be asked.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DevicePlan {
     /// Where it is.
     pub path: TargetPath,

@@ -1,0 +1,405 @@
+//! The task of one device: sends what its [`Poller`] asks for, asks the device how it is, and tells the hub.
+
+use std::collections::BTreeMap;
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use cipdeck_shared::api::{DeviceLoad, DeviceStatus, HealthState, Quality};
+use cipdeck_shared::config::{Connecting, DeviceId, GroupId, Profile};
+use cipdeck_shared::engine::Instant;
+use cipdeck_shared::engine::poll::{self, DeviceLimits, Failure, Group, Poller, Reading};
+use cipdeck_shared::plan::plant::DevicePlan;
+use cipdeck_shared::plan::{MessagePlan, TagWay};
+use cipdeck_shared::tag::Dialect;
+use cipdeck_shared::wire::{MessageRouterRequest, TooLong};
+use tokio::sync::watch;
+use tokio_util::sync::CancellationToken;
+
+use super::health::{self, Lost};
+use super::hub::Hub;
+use super::point::Point;
+use super::work::idle;
+use crate::actor::Actor;
+use crate::permit::{Order, Policy};
+use crate::runner::{Clock, Ended, Lane, Refused, Runner};
+
+/// What a device is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Work {
+    /// Whose.
+    pub(super) device: DeviceId,
+    /// What people call it.
+    pub(super) name: String,
+    /// Where it is; in words why it cannot be asked.
+    pub(super) plan: Result<DevicePlan, String>,
+    /// What is read.
+    pub(super) groups: Vec<Group>,
+}
+
+/// What the tasks of all devices share.
+#[derive(Clone, Debug)]
+pub(super) struct Shared {
+    pub(super) hub: Arc<Hub>,
+    pub(super) runner: Runner,
+    pub(super) policy: Arc<Policy>,
+    pub(super) clock: Clock,
+    pub(super) stop: CancellationToken,
+}
+
+/// A device is asked how it is so often.
+const HEALTH_PERIOD: Duration = Duration::from_secs(30);
+
+/// How long a device that did not answer is left alone, at first and at most.
+const FIRST_REST: Duration = Duration::from_millis(250);
+const LONGEST_REST: Duration = Duration::from_secs(5);
+
+/// What polling costs is told at most so often.
+const STATUS_PAUSE: Duration = Duration::from_millis(250);
+
+/// Runs until the device is forgotten or the relay stops.
+pub(super) async fn run(shared: Shared, mut work: watch::Receiver<Arc<Work>>) {
+    let first = Arc::clone(&work.borrow_and_update());
+    let mut task = Task::new(shared, first.device);
+    task.take(&first);
+    loop {
+        task.publish();
+        task.send();
+        let wake = task.wake();
+        let stop = task.shared.stop.clone();
+        tokio::select! {
+            biased;
+            () = stop.cancelled() => return,
+            changed = work.changed() => {
+                if changed.is_err() {
+                    return;
+                }
+                let work = Arc::clone(&work.borrow_and_update());
+                task.take(&work);
+            }
+            (lane, ended) = landed(&mut task.flight) => task.land(lane, &ended),
+            () = wait(wake) => {}
+        }
+    }
+}
+
+struct Task {
+    shared: Shared,
+    device: DeviceId,
+    work: Option<Arc<Work>>,
+    /// From when the device is known.
+    poller: Option<Poller>,
+    profile: Profile,
+    lane: Option<Lane>,
+    flight: Option<Flight>,
+    status: DeviceStatus,
+    /// The device is asked how it is.
+    health_due: tokio::time::Instant,
+    /// It is left alone until then.
+    rests_until: tokio::time::Instant,
+    rest: Duration,
+    /// The status was told, and may be told again then.
+    told: Option<DeviceStatus>,
+    tell: tokio::time::Instant,
+}
+
+struct Flight {
+    is_health: bool,
+    message: Pin<Box<dyn Future<Output = (Lane, Result<Ended, Refused>)> + Send>>,
+}
+
+impl Task {
+    fn new(shared: Shared, device: DeviceId) -> Self {
+        let now = tokio::time::Instant::now();
+        Self {
+            shared,
+            device,
+            work: None,
+            poller: None,
+            profile: Profile::Auto,
+            lane: None,
+            flight: None,
+            status: idle(device),
+            health_due: now,
+            rests_until: now,
+            rest: FIRST_REST,
+            told: None,
+            tell: now,
+        }
+    }
+
+    /// Something else is to be done from now on.
+    fn take(&mut self, work: &Arc<Work>) {
+        let before = self.work.replace(Arc::clone(work));
+        let is_same_device = before.as_ref().is_some_and(|before| before.plan == work.plan);
+        if !is_same_device {
+            let now = tokio::time::Instant::now();
+            (self.poller, self.flight, self.lane, self.rest) = (None, None, None, FIRST_REST);
+            (self.health_due, self.rests_until) = (now, now);
+            self.status = idle(self.device);
+            self.profile = work.plan.as_ref().map_or(Profile::Auto, |plan| plan.profile);
+            if let Err(wrong) = &work.plan {
+                self.status.errors = vec![wrong.clone()];
+            }
+            self.start_polling();
+        } else if let Some(poller) = &mut self.poller {
+            let now = self.shared.clock.now();
+            let old: BTreeMap<_, _> =
+                before.iter().flat_map(|before| &before.groups).map(|group| (group.id, group)).collect();
+            for id in old.keys().filter(|id| work.groups.iter().all(|group| group.id != **id)) {
+                poller.remove_group(*id, now);
+            }
+            for group in work.groups.iter().filter(|group| old.get(&group.id) != Some(group)) {
+                poller.put_group(group.clone(), now);
+            }
+        }
+        let items = work.groups.iter().filter(|group| group.on).map(|group| group.items.len()).sum::<usize>();
+        self.status.load.items = u32::try_from(items).unwrap_or(u32::MAX);
+        if !self.is_on() {
+            // Its session may close.
+            self.lane = None;
+            self.status.health = idle(self.device).health;
+            self.health_due = tokio::time::Instant::now();
+        } else if self.status.health.state == HealthState::Idle {
+            self.status.health.state = HealthState::Asking;
+            "it is being asked".clone_into(&mut self.status.health.words);
+        }
+    }
+
+    /// Whether the device is to be asked at all.
+    fn is_on(&self) -> bool {
+        let work = self.work.as_ref();
+        work.is_some_and(|work| work.plan.is_ok() && work.groups.iter().any(|group| group.on))
+    }
+
+    /// From when the kind of device is known.
+    fn start_polling(&mut self) {
+        let Some(work) = self.work.clone().filter(|_| self.profile != Profile::Auto) else { return };
+        let Ok(plan) = &work.plan else { return };
+        let way = way(plan, self.profile);
+        let mut limits = DeviceLimits::of(Dialect::of(self.profile), way.connected);
+        // Blocks to the same device get their share of what it takes.
+        let shared = self.shared.policy.messages_per_second();
+        let share = if shared == 0 { u32::MAX } else { (shared / 4 * 3).max(1) };
+        limits.max_requests_per_s = plan.max_requests_per_s.min(share);
+        if !way.connected && !plan.path.route.is_empty() {
+            // What wraps a request that goes on along a route: Unconnected_Send with its path, two sizes and a pad.
+            let wrapped = 14 + plan.path.route.bytes().len();
+            limits.request_max = limits.request_max.saturating_sub(wrapped);
+        }
+        let (mut poller, now) = (Poller::new(limits), self.shared.clock.now());
+        for group in &work.groups {
+            poller.put_group(group.clone(), now);
+        }
+        self.profile.word().clone_into(&mut self.status.profile);
+        self.poller = Some(poller);
+    }
+
+    /// Sends what is due, if nothing is under way.
+    fn send(&mut self) {
+        if self.flight.is_some() || !self.is_on() || tokio::time::Instant::now() < self.rests_until {
+            return;
+        }
+        let Some(work) = self.work.clone() else { return };
+        let Ok(plan) = &work.plan else { return };
+        if tokio::time::Instant::now() >= self.health_due {
+            // Every device takes this unconnected.
+            let way = TagWay { connected: false, ..way(plan, self.profile) };
+            return self.fly(&work.name, true, health::request().and_then(|it| MessagePlan::tag(&way, it)));
+        }
+        let now = self.shared.clock.now();
+        let Some(request) = self.poller.as_mut().and_then(|poller| poller.poll_request(now)) else { return };
+        let way = way(plan, self.profile);
+        let message = MessageRouterRequest::decode(&request.bytes)
+            .map_err(|error| error.to_string())
+            .and_then(|message| MessagePlan::tag(&way, message).map_err(|error| error.to_string()));
+        match message {
+            Ok(message) => self.fly(&work.name, false, Ok(message)),
+            Err(reason) => self.answer(Err(Lost { is_denied: false, reason })),
+        }
+    }
+
+    fn fly(&mut self, name: &str, is_health: bool, message: Result<MessagePlan, TooLong>) {
+        let Ok(message) = message else { return };
+        let lane = self.lane.take().unwrap_or_else(|| self.shared.runner.lane(name));
+        if !is_health {
+            self.shared.policy.metrics.poll();
+        }
+        let message = async move {
+            let mut lane = lane;
+            let ended = lane.send(message, Some(Order::read(Actor::relay()))).await;
+            (lane, ended)
+        };
+        self.flight = Some(Flight { is_health, message: Box::pin(message) });
+    }
+
+    /// A message has ended.
+    fn land(&mut self, lane: Lane, ended: &Result<Ended, Refused>) {
+        let is_health = self.flight.take().is_some_and(|flight| flight.is_health);
+        self.lane = self.is_on().then_some(lane);
+        let reply = health::reply(ended);
+        if let Err(lost) = &reply {
+            self.rests_until = tokio::time::Instant::now() + self.rest;
+            self.rest = (self.rest * 2).min(LONGEST_REST);
+            if is_health {
+                // Where it is known how, values are asked for next: each says that it is lost.
+                let wait = if self.poller.is_some() { HEALTH_PERIOD } else { Duration::ZERO };
+                self.health_due = self.rests_until + wait;
+            }
+            if self.is_on() {
+                self.status.health = health::lost(&self.status.health, lost);
+            }
+        } else {
+            self.rest = FIRST_REST;
+            if matches!(self.status.health.state, HealthState::Lost | HealthState::Denied) {
+                // It is back: how is it?
+                self.health_due = tokio::time::Instant::now();
+            }
+        }
+        match (is_health, reply) {
+            (false, reply) => self.answer(reply),
+            (true, Ok(reply)) => self.identified(reply),
+            (true, Err(lost)) => self.nothing_is_read(&lost.reason),
+        }
+    }
+
+    fn answer(&mut self, reply: Result<&[u8], Lost>) {
+        let now = self.shared.clock.now();
+        if let Some(poller) = &mut self.poller {
+            poller.handle_reply(now, reply.map_err(|lost| Failure::Lost { reason: lost.reason }));
+        }
+    }
+
+    /// The device has said what it is, or has refused to.
+    fn identified(&mut self, reply: &[u8]) {
+        self.health_due = tokio::time::Instant::now() + HEALTH_PERIOD;
+        match health::identity(reply) {
+            Ok(identity) => {
+                self.status.health = health::good(&identity);
+                if self.profile == Profile::Auto {
+                    let (vendor, kind) = (identity.vendor, identity.device_type);
+                    self.profile = Profile::of_identity(vendor, kind, identity.name.bytes());
+                    self.start_polling();
+                }
+            }
+            Err(why) => {
+                self.status.health.state = HealthState::Good;
+                self.status.health.words = format!("it answers, and {why}");
+                if self.profile == Profile::Auto {
+                    self.profile = Profile::Generic;
+                    self.start_polling();
+                }
+            }
+        }
+    }
+
+    /// Nobody knows yet how this device is asked for values: it has not said what it is.
+    fn nothing_is_read(&self, reason: &str) {
+        let (Some(work), None) = (&self.work, &self.poller) else { return };
+        for group in work.groups.iter().filter(|group| group.on) {
+            self.shared.hub.put_all_points(GroupId(group.id), |point| Point {
+                quality: if point.value.is_some() { Quality::Stale } else { Quality::Bad },
+                reason: Some(reason.to_owned()),
+                ..point.clone()
+            });
+        }
+    }
+
+    /// When something is to be done, if nothing happens before.
+    fn wake(&self) -> Option<tokio::time::Instant> {
+        let tell = (self.told.as_ref() != Some(&self.status)).then_some(self.tell);
+        if !self.is_on() {
+            return tell;
+        }
+        let due = self.poller.as_ref().and_then(Poller::poll_timeout).map(|due| self.shared.clock.at(due));
+        let send =
+            [Some(self.health_due), due].into_iter().flatten().min().map(|due| due.max(self.rests_until));
+        let send = send.filter(|_| self.flight.is_none());
+        [tell, send].into_iter().flatten().min()
+    }
+
+    /// Tells what has changed.
+    fn publish(&mut self) {
+        let clock = self.shared.clock;
+        if let Some(poller) = &mut self.poller {
+            let mut points = Vec::new();
+            while let Some((group, item)) = poller.poll_change() {
+                if let Some(reading) = poller.reading(item) {
+                    points.push((GroupId(group), item, point(reading, clock)));
+                }
+            }
+            if !points.is_empty() {
+                self.shared.policy.metrics.values(points.len());
+                self.shared.hub.put_points(points);
+            }
+        }
+        let now = tokio::time::Instant::now();
+        let told = self.told.as_ref();
+        let is_urgent = told.is_none_or(|told| told.health.state != self.status.health.state);
+        if !is_urgent && now < self.tell {
+            return;
+        }
+        if let Some(poller) = &self.poller {
+            self.status.load = load(poller.load(), self.status.load.items);
+        }
+        if self.told.as_ref() != Some(&self.status) {
+            self.shared.hub.put_status(self.status.clone());
+            self.told = Some(self.status.clone());
+            self.tell = now + STATUS_PAUSE;
+        }
+    }
+}
+
+/// How messages about tags get to a device of this kind.
+pub(super) fn way(plan: &DevicePlan, profile: Profile) -> TagWay {
+    let connected = match (profile, plan.connecting) {
+        (Profile::Micro800, _) | (_, Connecting::Connected) => true,
+        (_, Connecting::Auto | Connecting::Unconnected) => false,
+    };
+    TagWay { path: plan.path.clone(), profile, connected, timeout_ms: plan.timeout_ms }
+}
+
+async fn landed(flight: &mut Option<Flight>) -> (Lane, Result<Ended, Refused>) {
+    match flight {
+        Some(flight) => flight.message.as_mut().await,
+        None => std::future::pending().await,
+    }
+}
+
+async fn wait(until: Option<tokio::time::Instant>) {
+    match until {
+        Some(until) => tokio::time::sleep_until(until).await,
+        None => std::future::pending().await,
+    }
+}
+
+fn point(reading: &Reading, clock: Clock) -> Point {
+    let at = |instant: Instant| clock.at(instant);
+    Point {
+        quality: match reading.quality {
+            poll::Quality::Waiting => Quality::Waiting,
+            poll::Quality::Good => Quality::Good,
+            poll::Quality::Stale => Quality::Stale,
+            poll::Quality::Bad => Quality::Bad,
+        },
+        reason: reading.reason.as_ref().map(poll::Reason::text),
+        value: reading.value.clone(),
+        kind: reading.kind.clone(),
+        at: reading.at.map(at),
+    }
+}
+
+fn load(load: poll::Load, items: u32) -> DeviceLoad {
+    DeviceLoad {
+        requests: load.requests,
+        requests_per_s: load.last_second,
+        requests_per_cycle: load.requests_per_cycle,
+        cycle_us: load.cycle_us,
+        lateness_us: load.lateness_us,
+        skipped_periods: load.skipped_periods,
+        items,
+        bad_items: load.bad_items,
+        is_limited: load.is_limited,
+    }
+}

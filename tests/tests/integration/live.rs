@@ -1,0 +1,237 @@
+//! Devices, groups and variables through the relay: one poll however many look, bad tags, lost devices, writes.
+
+use std::time::Duration;
+
+use cipdeck_tests::PATIENCE;
+use cipdeck_tests::command::Service;
+use cipdeck_tests::live::LiveViewer;
+use cipdeck_tests::relay::Relay;
+use cipdeck_tests::rest::Rest;
+use futures_util::future::join_all;
+use serde_json::{Value, json};
+
+/// A device with one group that is off; the ids of both.
+async fn device(rest: &Rest, address: &str, profile: &str, period_ms: u32) -> (String, String) {
+    let device = json!({ "name": "device", "path": format!("4,{address}"), "profile": profile });
+    let device = made(rest, "devices", &device).await;
+    let group = json!({ "device": device["id"], "name": "group", "period_ms": period_ms });
+    let group = made(rest, "groups", &group).await;
+    (id(&device), id(&group))
+}
+
+async fn made(rest: &Rest, path: &str, body: &Value) -> Value {
+    let reply = rest.post(path, body).await;
+    assert_eq!(reply.status, 201, "{path} {body}: {reply:?}");
+    reply.body
+}
+
+/// Variables with these addresses as names; their ids.
+async fn variables(rest: &Rest, group: &str, addresses: &[&str]) -> Vec<String> {
+    let new: Vec<_> = addresses.iter().map(|name| json!({ "name": name, "address": name })).collect();
+    let made = made(rest, &format!("groups/{group}/variables"), &json!({ "variables": new })).await;
+    made.as_array().expect("variables").iter().map(id).collect()
+}
+
+fn id(entry: &Value) -> String {
+    entry["id"].as_str().expect("an id").to_owned()
+}
+
+async fn turn(rest: &Rest, group: &str, on: bool) {
+    let tree = rest.get("devices").await.body;
+    let groups = tree["groups"].as_array().expect("groups");
+    let mut there = groups.iter().find(|there| there["id"] == group).expect("the group").clone();
+    there["on"] = json!(on);
+    let reply = rest.put(&format!("groups/{group}"), &there).await;
+    assert_eq!(reply.status, 200, "{reply:?}");
+}
+
+/// Requests that a simulated device says to have got, when it ends.
+async fn requests(mut device: Service) -> u64 {
+    device.process.interrupt();
+    device.process.ended(PATIENCE).await;
+    let counted = |line: &str| line.strip_prefix("unconnected ")?.split(',').next()?.parse().ok();
+    device.process.line("it says what it got", PATIENCE, counted).await
+}
+
+#[tokio::test]
+async fn ten_viewers_cost_the_device_no_more_than_one() {
+    let mut counts = Vec::new();
+    for viewers in [1, 10] {
+        let plc = Service::simulate("127.0.0.1:0", &["--profile", "omron"]).await;
+        let relay = Relay::start().await;
+        let (_, group) = device(&relay.rest, &plc.address, "omron", 200).await;
+        let ids = variables(&relay.rest, &group, &["TAG1", "TAG2", "grHWCs_PV"]).await;
+        let mut all = Vec::new();
+        for _ in 0..viewers {
+            let mut viewer = LiveViewer::connect(relay.address).await;
+            viewer.watch(&[&group]).await;
+            all.push(viewer);
+        }
+        turn(&relay.rest, &group, true).await;
+        let pv = &ids[2];
+        join_all(all.iter_mut().map(|viewer| {
+            viewer.until("20 periods", PATIENCE, |it| (it.times.get(pv)?.len() >= 20).then_some(()))
+        }))
+        .await;
+        turn(&relay.rest, &group, false).await;
+        relay.stop().await;
+        counts.push(requests(plc).await);
+    }
+    println!("requests in 20 periods: one viewer {}, ten viewers {}", counts[0], counts[1]);
+    assert!(counts[0].abs_diff(counts[1]) <= 1, "{counts:?}");
+    assert!(counts[0] <= 23, "a request each period, and one for the device's identity: {counts:?}");
+}
+
+#[tokio::test]
+async fn a_bad_tag_is_said_and_the_others_are_read() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "omron"]).await;
+    let relay = Relay::start().await;
+    let (device, group) = device(&relay.rest, &plc.address, "auto", 100).await;
+    let ids = variables(&relay.rest, &group, &["TAG1", "no_such_tag", "grHWCs_PV"]).await;
+    let mut viewer = LiveViewer::connect(relay.address).await;
+    viewer.watch(&[&group]).await;
+    turn(&relay.rest, &group, true).await;
+    viewer
+        .until("two are good and one is bad", PATIENCE, |viewer| {
+            let quality = |place: usize| viewer.values.get(&ids[place])?["quality"].as_str();
+            ([quality(0), quality(1), quality(2)] == [Some("good"), Some("bad"), Some("good")]).then_some(())
+        })
+        .await;
+    let bad = &viewer.values[&ids[1]];
+    assert!(bad["reason"].as_str().is_some_and(|reason| !reason.is_empty()), "{bad}");
+    let status = viewer
+        .until("the device is well", PATIENCE, |viewer| {
+            let status = viewer.statuses.get(&device)?;
+            (status["health"]["state"] == "good" && status["load"]["bad_items"] == 1).then(|| status.clone())
+        })
+        .await;
+    assert_eq!((&status["profile"], &status["load"]["items"]), (&json!("omron"), &json!(3)), "{status}");
+    let values = relay.rest.get(&format!("groups/{group}/values")).await.body;
+    assert_eq!(values["values"].as_array().map(Vec::len), Some(3), "{values}");
+    assert_eq!(values["values"][0]["type"], "BOOL", "{values}");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn values_of_a_lost_device_are_stale_with_the_reason_and_come_back_with_it() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "logix"]).await;
+    let address = plc.address.clone();
+    let relay = Relay::start().await;
+    let (device, group) = device(&relay.rest, &address, "logix", 100).await;
+    let ids = variables(&relay.rest, &group, &["Scalar"]).await;
+    let mut viewer = LiveViewer::connect(relay.address).await;
+    viewer.watch(&[&group]).await;
+    turn(&relay.rest, &group, true).await;
+    let quality = |viewer: &LiveViewer, wanted: &str| {
+        viewer.values.get(&ids[0]).filter(|value| value["quality"] == wanted).cloned()
+    };
+    viewer.until("it is good", PATIENCE, |viewer| quality(viewer, "good")).await;
+    requests(plc).await;
+    let stale = viewer.until("it is stale", PATIENCE, |viewer| quality(viewer, "stale")).await;
+    assert!(stale["reason"].as_str().is_some_and(|reason| !reason.is_empty()), "{stale}");
+    assert_eq!(stale["type"], "DINT", "the last value is still there: {stale}");
+    viewer
+        .until("the device is lost", PATIENCE, |viewer| {
+            (viewer.statuses.get(&device)?["health"]["state"] == "lost").then_some(())
+        })
+        .await;
+    let _plc = Service::simulate(&address, &["--profile", "logix"]).await;
+    viewer.until("it is good again", PATIENCE, |viewer| quality(viewer, "good")).await;
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_device_that_is_not_on_the_list_is_not_asked_and_says_why() {
+    let relay = Relay::start().await;
+    for profile in ["auto", "omron"] {
+        let (device, group) = device(&relay.rest, "192.0.2.1", profile, 100).await;
+        let ids = variables(&relay.rest, &group, &["TAG1"]).await;
+        let mut viewer = LiveViewer::connect(relay.address).await;
+        viewer.watch(&[&group]).await;
+        turn(&relay.rest, &group, true).await;
+        let words = viewer
+            .until("it is denied", PATIENCE, |viewer| {
+                let health = &viewer.statuses.get(&device)?["health"];
+                (health["state"] == "denied").then(|| health["words"].as_str().unwrap_or_default().to_owned())
+            })
+            .await;
+        assert!(words.contains("192.0.2.1:44818 is not on the list of allowed targets"), "{words}");
+        let value = viewer
+            .until("its values say so", PATIENCE, |viewer| {
+                viewer.values.get(&ids[0]).filter(|value| value["quality"] == "bad").cloned()
+            })
+            .await;
+        assert!(value["reason"].as_str().is_some_and(|reason| reason.contains("not on the list")), "{value}");
+    }
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_list_of_variables_with_one_bad_line_stores_nothing_and_a_file_comes_back() {
+    let relay = Relay::start().await;
+    let (device, group) = device(&relay.rest, "127.0.0.1:9", "omron", 1000).await;
+    let path = format!("groups/{group}/variables");
+    let new = json!({ "variables": [
+        { "name": "motor", "address": "stMotor", "type": "STRUCT{speed: REAL; run: BOOL}" },
+        { "parent_address": "stMotor", "name": "speed", "address": "speed", "unit": "1/min", "writable": true },
+        { "name": "wrong", "address": "a b" },
+    ]});
+    let reply = relay.rest.post(&path, &new).await;
+    reply.is_problem(422, "findings");
+    assert_eq!(reply.body["findings"][0]["field"], "variables[2].address", "{reply:?}");
+    assert_eq!(relay.rest.get(&path).await.body, json!([]));
+
+    let mut right = new.clone();
+    right["variables"].as_array_mut().expect("a list").pop();
+    made(&relay.rest, &path, &right).await;
+    let file = relay.rest.get(&format!("{path}.csv")).await;
+    let text = file.body.as_str().expect("a file").to_owned();
+    assert!(text.starts_with("parent,name,address,type,"), "{text}");
+
+    let other = made(&relay.rest, "groups", &json!({ "device": device, "name": "other" })).await;
+    let other = format!("groups/{}/variables", id(&other));
+    let broken = text.replace("yes", "perhaps");
+    let reply = relay.rest.post(&format!("{other}.csv"), &json!({ "csv": broken })).await;
+    reply.is_problem(422, "findings");
+    assert_eq!(reply.body["findings"][0]["field"], "line 3.writable", "{reply:?}");
+    assert_eq!(relay.rest.get(&other).await.body, json!([]));
+    made(&relay.rest, &format!("{other}.csv"), &json!({ "csv": text })).await;
+    let again = relay.rest.get(&format!("{other}.csv")).await.body;
+    assert_eq!(again.as_str(), Some(text.as_str()));
+
+    let copy = json!({ "name": "copy", "path": "4,127.0.0.1:10" });
+    let copy = made(&relay.rest, &format!("devices/{device}/copy"), &copy).await;
+    let tree = relay.rest.get("devices").await.body;
+    let groups = tree["groups"].as_array().expect("groups");
+    let copied = groups.iter().find(|it| it["device"] == copy["id"]).expect("a copied group");
+    let file = relay.rest.get(&format!("groups/{}/variables.csv", id(copied))).await;
+    assert_eq!(file.body.as_str(), Some(text.as_str()), "parents and parts are copied");
+
+    // Whoever has not seen the newest changes nothing.
+    let gone = relay.rest.delete(&format!("devices/{device}?revision=7")).await;
+    gone.is_problem(409, "stale_revision");
+    assert_eq!(relay.rest.delete(&format!("devices/{device}?revision=1")).await.status, 204);
+    relay.rest.get(&path).await.is_problem(404, "not_found");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_message_that_is_none_is_answered_and_the_viewer_stays() {
+    let relay = Relay::start().await;
+    let mut viewer = LiveViewer::connect(relay.address).await;
+    for text in ["", "[]", r#"{"type":"run"}"#, r#"{"type":"watch","groups":["b1"]}"#] {
+        viewer.say(text).await;
+        let problem = |viewer: &LiveViewer| viewer.last.get("problem").cloned();
+        viewer.until("an answer", Duration::from_secs(5), problem).await;
+        viewer.last.clear();
+    }
+    let (_, group) = device(&relay.rest, "127.0.0.1:9", "omron", 1000).await;
+    viewer.until("the tree has changed", PATIENCE, |viewer| viewer.last.get("tree").cloned()).await;
+    viewer.watch(&[&group, "g999"]).await;
+    viewer.until("its values", PATIENCE, |viewer| viewer.last.get("values").cloned()).await;
+    variables(&relay.rest, &group, &["x"]).await;
+    viewer
+        .until("its variables have changed", PATIENCE, |viewer| viewer.last.get("variables").cloned())
+        .await;
+    relay.stop().await;
+}
