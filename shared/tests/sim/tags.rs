@@ -2,7 +2,7 @@
 
 use cipdeck_shared::engine::time::Instant;
 use cipdeck_shared::sim::{Device, SimConfig, SimProfile, TagMemory};
-use cipdeck_shared::tag::{Dialect, TagData, TagName, Type, Value, request};
+use cipdeck_shared::tag::{Dialect, TagData, TagName, Type, Types, Value, request};
 use cipdeck_shared::wire::{
     Epath, GeneralStatus, LogicalKind, MessageRouterReply, MessageRouterRequest, MultipleServicePacket,
     MultipleServiceReply, Segment, SimpleDataSegment,
@@ -331,10 +331,36 @@ fn values_move() {
 }
 
 #[test]
-fn the_usual_tables_are_there() {
-    for (dialect, least) in [(Dialect::Logix, 1_025), (Dialect::Omron, 40), (Dialect::Micro800, 20)] {
-        assert!(TagMemory::usual(dialect).len() >= least, "{dialect:?}");
+fn the_usual_tags_have_the_values_of_their_tables() {
+    let logix = include_str!("../../src/sim/tags/usual/logix.json");
+    let omron = include_str!("../../src/sim/tags/usual/omron.json");
+    for (dialect, profile, table, least) in
+        [(Dialect::Logix, SimProfile::Logix, logix, 18), (Dialect::Omron, SimProfile::Omron, omron, 35)]
+    {
+        let table: serde_json::Value = serde_json::from_str(table).unwrap();
+        let mut types = Types::default();
+        for kind in table["types"].as_array().unwrap() {
+            types.add(kind["name"].as_str().unwrap(), kind["type"].as_str().unwrap()).unwrap();
+        }
+        let (mut device, mut compared) = (Device::new(profile.config()), 0);
+        for row in table["tags"].as_array().unwrap() {
+            let (name, kind) =
+                (row["name"].as_str().unwrap(), types.read(row["type"].as_str().unwrap()).unwrap());
+            if row["access"] == "none" || row["moves"].is_string() || row["value"].is_null() {
+                continue;
+            }
+            let count = if dialect == Dialect::Omron { 1 } else { kind.elements(dialect) };
+            let (status, _, data) = read(&mut device, name, u16::try_from(count).unwrap());
+            assert_eq!(status, 0, "{name}");
+            let found = kind.decode(dialect, TagData::decode(&data).unwrap().data);
+            let expected = kind.value_of_json(&row["value"]).unwrap();
+            // JSON does not keep the order of members.
+            assert_eq!(found.unwrap().to_json(), expected.to_json(), "{name}");
+            compared += 1;
+        }
+        assert!(compared >= least, "{dialect:?}: {compared}");
     }
+    assert!(TagMemory::usual(Dialect::Micro800).len() >= 20);
 }
 
 #[test]
