@@ -11,6 +11,7 @@
 //! that is outstanding; after a timeout or a cancellation the socket is replaced.
 
 mod block;
+pub mod browse;
 mod channel;
 mod client;
 mod connection;

@@ -5,6 +5,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod any;
+mod controllers;
 mod device;
 mod isolation;
 mod learning;
