@@ -5,6 +5,8 @@ use cipdeck_shared::engine::poll::{DeviceLimits, Failure, Group, Item, Poller, Q
 use cipdeck_shared::engine::time::{Instant, Millis};
 use cipdeck_shared::sim::{Device, SimProfile};
 use cipdeck_shared::tag::{Dialect, Type};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 const PROFILES: [SimProfile; 2] = [SimProfile::Logix, SimProfile::Omron];
 

@@ -6,6 +6,8 @@ use cipdeck_shared::wire::GeneralStatus;
 
 use crate::device::Device;
 use crate::owner::Owner;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 const FAMILIES: [Dialect; 3] = [Dialect::Logix, Dialect::Omron, Dialect::Micro800];
 

@@ -5,6 +5,8 @@ use cipdeck_shared::tag::Dialect;
 
 use crate::device::Device;
 use crate::owner::Owner;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 #[test]
 fn a_device_without_packets_is_asked_one_by_one_from_then_on() {

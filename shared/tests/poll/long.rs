@@ -5,6 +5,8 @@ use cipdeck_shared::tag::Dialect;
 
 use crate::device::Device;
 use crate::owner::Owner;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 fn list(count: usize) -> String {
     format!("[{}]", (0..count).map(|number| number.to_string()).collect::<Vec<_>>().join(", "))

@@ -4,6 +4,8 @@ use cipdeck_shared::tag::Dialect;
 
 use crate::device::Device;
 use crate::owner::Owner;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 #[test]
 fn two_tags_of_one_group_travel_together_as_in_the_document() {

@@ -6,6 +6,8 @@ use cipdeck_shared::tag::Dialect;
 
 use crate::device::Device;
 use crate::owner::Owner;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 fn two() -> Owner {
     let mut owner = Owner::new(Device::new(Dialect::Logix).with("a", "DINT", "1").with("b", "REAL", "2.5"));
