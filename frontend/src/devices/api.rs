@@ -15,22 +15,14 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use crate::net::rest::{self, Answered};
 
-/// Something with the revision that it replaces.
-#[derive(Serialize)]
-struct Revised<T> {
-    revision: u64,
-    #[serde(flatten)]
-    config: T,
-}
-
 /// One more device.
 pub async fn add_device(device: DeviceConfig) -> Answered<Device> {
     send(Method::POST, "devices", &device).await
 }
 
-/// A changed device.
-pub async fn change_device(id: DeviceId, revision: u64, config: DeviceConfig) -> Answered<Device> {
-    send(Method::PUT, &format!("devices/{id}"), &Revised { revision, config }).await
+/// A changed device; it names the revision that it replaces.
+pub async fn change_device(device: Device) -> Answered<Device> {
+    send(Method::PUT, &format!("devices/{}", device.id), &device).await
 }
 
 /// A device with the same groups and variables.
@@ -48,9 +40,9 @@ pub async fn add_group(group: GroupConfig) -> Answered<Group> {
     send(Method::POST, "groups", &group).await
 }
 
-/// A changed group.
-pub async fn change_group(id: GroupId, revision: u64, config: GroupConfig) -> Answered<Group> {
-    send(Method::PUT, &format!("groups/{id}"), &Revised { revision, config }).await
+/// A changed group; it names the revision that it replaces.
+pub async fn change_group(group: Group) -> Answered<Group> {
+    send(Method::PUT, &format!("groups/{}", group.id), &group).await
 }
 
 /// More variables: all of them, or none. What was made.
@@ -58,14 +50,9 @@ pub async fn add_variables(id: GroupId, variables: Vec<NewVariable>) -> Answered
     send(Method::POST, &format!("groups/{id}/variables"), &NewVariables { variables }).await
 }
 
-/// A changed variable.
-pub async fn change_variable(id: VariableId, revision: u64, config: VariableConfig) -> Answered<Variable> {
-    send(Method::PUT, &format!("variables/{id}"), &Revised { revision, config }).await
-}
-
-/// The variables of a file: all of them, or none.
-pub async fn import(id: GroupId, csv: String) -> Answered<()> {
-    quiet(Method::POST, &format!("groups/{id}/variables.csv"), &VariablesCsv { csv }).await
+/// A changed variable; it names the revision that it replaces.
+pub async fn change_variable(variable: Variable) -> Answered<Variable> {
+    send(Method::PUT, &format!("variables/{}", variable.id), &variable).await
 }
 
 /// The first half of a write.

@@ -40,7 +40,7 @@ pub(super) fn PlantTree(props: &PlantTreeProps) -> Html {
                 { link(Page::New, "button wide link", html! { tr!("tree.new_device") }) }
             }
             <input
-                class="input filter" type="search" placeholder={tr!("list.filter")} aria-label={tr!("tree.filter")}
+                class="input filter" type="search" placeholder={tr!("tree.filter_short")} aria-label={tr!("tree.filter")}
                 value={(*filter).clone()} {oninput} data-test="tree-filter"
             />
             { for sites.map(|devices| site(&plant, &tree, devices, props.page)) }

@@ -40,7 +40,7 @@ pub(super) fn DeviceForm(props: &DeviceFormProps) -> Html {
             tried.set(true);
             match (&read, &stored) {
                 (Ok(config), Some(old)) => {
-                    action.go(api::change_device(old.id, old.revision, config.clone()), |_| {});
+                    action.go(api::change_device(Device { config: config.clone(), ..old.clone() }), |_| {});
                 }
                 (Ok(config), None) => {
                     action.go(api::add_device(config.clone()), |device| route::go(Page::Device(device.id)));

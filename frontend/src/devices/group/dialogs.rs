@@ -48,7 +48,9 @@ pub(super) fn dialog(
             let line = line(id)?;
             html! { <WriteDialog variable={line.variable.clone()} address={line.address.clone()} device={device.clone()} {on_close} /> }
         }
-        Asked::Paste => html! { <PasteDialog group={group.id} lines={lines.clone()} {on_close} /> },
+        Asked::Paste => {
+            html! { <PasteDialog group={group.id} device={device.clone()} lines={lines.clone()} {on_close} /> }
+        }
         Asked::Browse => {
             html! { <BrowseDialog device={device.clone()} group={group.id} lines={lines.clone()} {on_close} /> }
         }

@@ -55,7 +55,7 @@ pub(super) fn VariableDialog(props: &VariableDialogProps) -> Html {
             let Ok(config) = &read else { return };
             let on_close = props.on_close.clone();
             if let Some(stored) = &props.stored {
-                let change = api::change_variable(stored.id, stored.revision, config.clone());
+                let change = api::change_variable(Variable { config: config.clone(), ..stored.clone() });
                 action.go(change, move |_| on_close.emit(()));
                 return;
             }

@@ -37,7 +37,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
         let (action, group) = (action.clone(), group.clone());
         move |_: MouseEvent| {
             let config = GroupConfig { on: !group.config.on, ..group.config.clone() };
-            action.go(api::change_group(group.id, group.revision, config), |_| {});
+            action.go(api::change_group(Group { config, ..group.clone() }), |_| {});
         }
     };
     let wish = |asked: Asked| ask.reform(move |_: MouseEvent| asked);

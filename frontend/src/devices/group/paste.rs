@@ -2,7 +2,10 @@
 
 use std::rc::Rc;
 
-use cipdeck_shared::config::GroupId;
+use cipdeck_shared::{
+    config::{Device, GroupId, Variable},
+    plan::plant,
+};
 use web_sys::HtmlInputElement;
 use yew::{platform::spawn_local, prelude::*};
 
@@ -24,6 +27,7 @@ use crate::{
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct PasteProps {
     pub(super) group: GroupId,
+    pub(super) device: Device,
     pub(super) lines: Rc<Lines>,
     pub(super) on_close: Callback<()>,
 }
@@ -33,10 +37,13 @@ pub(super) struct PasteProps {
 pub(super) fn PasteDialog(props: &PasteProps) -> Html {
     let action = use_action();
     let text = use_state(String::new);
-    let sheet = use_memo(((*text).clone(), props.lines.clone()), |(text, lines)| {
-        let known: Vec<_> = lines.iter().map(|line| line.address.clone()).collect();
-        Sheet::read(text, &known)
-    });
+    let sheet =
+        use_memo(((*text).clone(), props.lines.clone(), props.device.clone()), |(text, lines, device)| {
+            let known: Vec<_> = lines.iter().map(|line| line.address.clone()).collect();
+            let there: Vec<Variable> = lines.iter().map(|line| line.variable.clone()).collect();
+            let types = plant::device(&device.config).map(|plan| plan.types).unwrap_or_default();
+            Sheet::read(text, &known).checked(&there, &types)
+        });
     let good = sheet.good();
     let (count, wrong) = (good.len(), sheet.rows.len() - good.len());
     let onsubmit = {

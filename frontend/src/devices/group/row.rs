@@ -2,7 +2,10 @@
 
 use std::rc::Rc;
 
-use cipdeck_shared::{api::Quality, config::VariableId};
+use cipdeck_shared::{
+    api::Quality,
+    config::{VariableConfig, VariableId},
+};
 use yew::prelude::*;
 
 use super::{asked::Asked, lines::Line};
@@ -76,28 +79,46 @@ pub(super) fn VariableRow(props: &RowProps) -> Html {
                     { &config.name }
                 }
             </th>
-            <td class={classes!("col-number", is_old.then_some("stale"))} title={value.to_owned()} data-test="value">{ value }</td>
-            <td class="col-unit">{ &config.unit }</td>
-            if let Some(reason) = reason.filter(|_| common.on) {
-                <td class="col-reason" colspan="2" title={reason.clone()} data-test="reason">{ reason }</td>
-            } else {
-                <td class="col-low">{ range.map(|(low, _)| short(low)) }</td>
-                <td class="col-high">{ range.map(|(_, high)| short(high)) }</td>
-            }
+            { cells(value, config, range, reason.filter(|_| common.on), is_old) }
             <td class="col-age">{ shown.as_deref().and_then(age).map(age_words) }</td>
             <td class="col-type mono" title={kind.clone()}>{ kind.unwrap_or_else(|| config.kind.clone()) }</td>
             <td class="col-address mono" title={line.address.clone()}>{ &line.address }</td>
+            <td class="col-trend">
+                <input type="checkbox" class="check" checked={is_traced} onchange={trace} title={tr!("row.trace_title")} aria-label={tr!("row.trace", name = config.name)} />
+            </td>
             <td class="col-do">
-                <label class="trace" title={tr!("row.trace_title")}>
-                    <input type="checkbox" checked={is_traced} onchange={trace} aria-label={tr!("row.trace", name = config.name)} />
-                    <span aria-hidden="true">{ tr!("row.trend") }</span>
-                </label>
                 if config.writable && common.may_write {
                     <button type="button" class="tool" onclick={ask(Asked::Write(id))} aria-label={tr!("row.write_label", name = config.name)} data-test="write">{ tr!("row.write") }</button>
                 }
             </td>
         </tr>
     }
+}
+
+/// Value, unit and range; a reason takes the place of what is missing.
+fn cells(
+    value: &str,
+    config: &VariableConfig,
+    range: Option<(f64, f64)>,
+    reason: Option<String>,
+    is_old: bool,
+) -> Html {
+    if let Some(reason) = reason.clone().filter(|_| value.is_empty()) {
+        return html! { <>
+            <td class="col-reason" colspan="2" title={reason.clone()} data-test="reason"><span>{ reason }</span></td>
+            <td class="col-low" /><td class="col-high" />
+        </> };
+    }
+    html! { <>
+        <td class={classes!("col-number", is_old.then_some("stale"))} title={value.to_owned()} data-test="value">{ value }</td>
+        <td class="col-unit">{ &config.unit }</td>
+        if let Some(reason) = reason {
+            <td class="col-low col-reason" colspan="2" title={reason.clone()} data-test="reason"><span>{ reason }</span></td>
+        } else {
+            <td class="col-low">{ range.map(|(low, _)| short(low)) }</td>
+            <td class="col-high">{ range.map(|(_, high)| short(high)) }</td>
+        }
+    </> }
 }
 
 /// Seconds since the value was read.

@@ -43,7 +43,7 @@ pub(super) fn SettingsDialog(props: &SettingsProps) -> Html {
                     ..group.config.clone()
                 };
                 let on_close = on_close.clone();
-                action.go(api::change_group(group.id, group.revision, config), move |_| on_close.emit(()));
+                action.go(api::change_group(Group { config, ..group.clone() }), move |_| on_close.emit(()));
             }
         }
     };

@@ -1,6 +1,10 @@
 //! Lines of a spreadsheet or of a CSV file as variables, with what is wrong with each.
 
-use cipdeck_shared::config::{NewVariable, join_address};
+use cipdeck_shared::{
+    config::{NewVariable, Variable, join_address},
+    plan::plant,
+    tag::Types,
+};
 use yew::AttrValue;
 
 use super::draft::{VariableDraft, Wrong};
@@ -88,15 +92,45 @@ impl Sheet {
         self.rows.iter().filter_map(|row| row.variable.clone()).collect()
     }
 
+    /// With what the relay would find: the same rules.
+    pub(super) fn checked(mut self, there: &[Variable], types: &Types) -> Self {
+        let places: Vec<_> = self
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| row.variable.is_some())
+            .map(|(place, _)| place)
+            .collect();
+        let Err(findings) = plant::added(there, &self.good(), types, |number| number.to_string()) else {
+            return self;
+        };
+        for finding in findings {
+            let at = finding
+                .field
+                .split_once('.')
+                .and_then(|(number, field)| Some((number.parse::<usize>().ok()?, field)));
+            let row = at.and_then(|(number, _)| self.rows.get_mut(*places.get(number)?)).or(None);
+            let field = at
+                .and_then(|(_, field)| MEMBERS.iter().find(|(name, _)| *name == field))
+                .map_or("line", |(name, _)| name);
+            // What is wrong with all of them together is told by the relay.
+            if let Some(row) = row {
+                row.variable = None;
+                row.wrong.push((field, finding.rule.to_string().into()));
+            }
+        }
+        self
+    }
+
     fn row(&self, number: usize, cells: Vec<String>, taken: &mut Vec<String>) -> SheetRow {
         let mut draft = VariableDraft::default();
         let mut parent = String::new();
         for (cell, column) in cells.iter().zip(&self.columns) {
             match column {
-                Column::Member("parent") => parent.clone_from(cell),
+                Column::Member("parent") => plain(cell).clone_into(&mut parent),
                 Column::Member(member) => {
                     if let Some(text) = draft.member(member) {
-                        text.clone_from(cell);
+                        plain(cell).clone_into(text);
                     }
                 }
                 Column::Unknown(_) => {}
@@ -129,6 +163,11 @@ impl Sheet {
     fn has(&self, member: &str) -> bool {
         self.columns.iter().any(|column| matches!(column, Column::Member(of) if *of == member))
     }
+}
+
+/// Our own files have an apostrophe in front of what a spreadsheet would take for a formula.
+fn plain(cell: &str) -> &str {
+    cell.strip_prefix('\'').filter(|rest| rest.starts_with(['=', '+', '-', '@'])).unwrap_or(cell)
 }
 
 /// The columns, if a line is a heading: it names an address or a name, and no two columns mean the same.
@@ -268,6 +307,28 @@ mod tests {
         let wrong: Vec<_> = sheet.rows.iter().map(|row| row.wrong.first().map(|(field, _)| *field)).collect();
         assert_eq!(wrong, [None, Some("address"), Some("address"), Some("min"), Some("line")]);
         assert!(words(&sheet.rows[3].wrong).contains("min"));
+    }
+
+    #[test]
+    fn what_the_relay_would_refuse_is_told_before() {
+        let sheet = read("address\ttype\nTAG1\tBOOL\nno name!\tREAL\nTAG2\tNOTYPE\n'-x\tINT")
+            .checked(&[], &Types::default());
+        let wrong: Vec<_> = sheet.rows.iter().map(|row| row.wrong.first().map(|(field, _)| *field)).collect();
+        assert_eq!(wrong[0], None);
+        assert_eq!(wrong[2], Some("type"), "{wrong:?}");
+        assert_eq!(sheet.rows[3].address, "-x");
+    }
+
+    #[test]
+    fn what_is_exported_can_be_pasted() {
+        let text = plant::write_csv(&[]);
+        let sheet = read(&text);
+        assert!(
+            sheet.columns.iter().all(|column| matches!(column, Column::Member(_))),
+            "{:?}",
+            sheet.columns
+        );
+        assert_eq!((sheet.columns.len(), sheet.rows.len()), (plant::COLUMNS.len(), 0));
     }
 
     #[test]

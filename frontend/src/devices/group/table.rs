@@ -47,12 +47,13 @@ pub(super) fn Variables(props: &VariablesProps) -> Html {
         { heading("col-variable", tr!("variable.name")) }
         { heading("col-number", tr!("row.value")) }
         { heading("col-unit", tr!("variable.unit")) }
-        { heading("col-low", tr!("row.low")) }
-        { heading("col-high", tr!("row.high")) }
+        <th scope="col" class="col-low" title={tr!("row.low_title")}>{ tr!("row.low") }</th>
+        <th scope="col" class="col-high" title={tr!("row.high_title")}>{ tr!("row.high") }</th>
         { heading("col-age", tr!("row.age")) }
         { heading("col-type", tr!("variable.type")) }
         { heading("col-address", tr!("variable.address")) }
-        { heading("col-do", AttrValue::default()) }
+        { heading("col-trend", tr!("row.trend")) }
+        <th scope="col" class="col-do"><span class="unseen">{ tr!("row.do") }</span></th>
     </> };
     html! { <>
         <Summary lines={props.lines.clone()} on={props.common.on} />

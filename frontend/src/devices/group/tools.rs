@@ -39,7 +39,7 @@ pub(super) fn tools(
                 <a class="tool" href={csv} download={format!("{}.csv", group.config.name)} data-test="export">{ tr!("tools.export") }</a>
                 <button type="button" class="tool" onclick={reset} title={tr!("tools.reset_title")} data-test="reset-ranges">{ tr!("tools.reset") }</button>
                 <input
-                    class="input filter" type="search" placeholder={tr!("list.filter")} aria-label={tr!("tools.filter")}
+                    class="input filter" type="search" placeholder={tr!("tree.filter_short")} aria-label={tr!("tools.filter")}
                     value={(**filter).clone()} {oninput} data-test="variable-filter"
                 />
             }

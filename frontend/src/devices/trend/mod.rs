@@ -48,7 +48,7 @@ const FRAME_MS: u32 = 200;
 #[component]
 pub(super) fn TrendPanel(props: &TrendProps) -> Html {
     let plant = use_plant();
-    let span = use_state(|| SPANS[1]);
+    let span = use_state(|| SPANS[0]);
     let paused = use_state(|| None::<f64>);
     let cursor = use_state(|| None::<f64>);
     let node = use_node_ref();
