@@ -3,11 +3,10 @@
 use cipdeck_shared::{
     api::{
         BrowseRequest, CopyDevice, DiscoverRequest, Discovered, NewValue, NewVariables, VariableWritten,
-        VariablesCsv, WriteTicket, WriteVariable,
+        WriteTicket, WriteVariable,
     },
     config::{
-        Device, DeviceConfig, DeviceId, Group, GroupConfig, GroupId, NewVariable, Variable, VariableConfig,
-        VariableId,
+        Device, DeviceConfig, DeviceId, Group, GroupConfig, GroupId, NewVariable, Variable, VariableId,
     },
 };
 use gloo_net::http::Method;
