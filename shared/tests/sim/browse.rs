@@ -6,6 +6,9 @@ use hex_literal::hex;
 
 use super::frames::{ask, at};
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 fn controller(profile: SimProfile, tags: &str) -> Device {
     let memory = TagMemory::from_json(profile.dialect().unwrap(), tags).unwrap();
     Device::new(SimConfig { tags: Some(memory.into()), ..profile.config() })

@@ -21,7 +21,7 @@ fn open(device: &mut Device, connection: &mut SimConnection, session: u32, reque
 }
 
 /// A device with a session and a connection.
-fn connected(config: SimConfig, request: &[u8]) -> (Device, SimConnection, u32, u32) {
+pub(crate) fn connected(config: SimConfig, request: &[u8]) -> (Device, SimConnection, u32, u32) {
     let mut device = Device::new(config);
     let (mut connection, session) = registered(&mut device);
     let id = open(&mut device, &mut connection, session, request);

@@ -8,7 +8,12 @@ use cipdeck_shared::wire::{
     MultipleServiceReply, Segment, SimpleDataSegment,
 };
 
-use super::frames::at;
+use super::connections::connected;
+use super::frames::{at, connected_of, exchange, ud};
+use super::opening::{LARGE_OPEN, OPEN};
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
 
 /// A controller with a few tags.
 fn controller(dialect: Dialect, tags: &str) -> Device {
@@ -308,6 +313,58 @@ fn a_micro800_refuses_what_it_does_not_know() {
     let forwarded =
         b"\x52\x02\x20\x06\x24\x01\x05\x9D\x08\x00\x0E\x03\x20\x01\x24\x01\x30\x07\x01\x00\x01\x00";
     assert_eq!(device.answer(forwarded, at(0))[2], 0x08, "Unconnected_Send");
+}
+
+#[test]
+fn a_micro800_answers_over_a_connection_and_refuses_without_the_vendors_words() {
+    let (mut device, mut connection, session, id) = connected(SimProfile::Micro800.config(), &OPEN);
+    let mut sequence = 0;
+    let mut ask = |request: &[u8]| {
+        sequence += 1;
+        let reply = exchange(&mut device, &mut connection, &ud(session, id, sequence, request), at(0));
+        let message = connected_of(&reply).2;
+        let reply = MessageRouterReply::decode(&message).unwrap();
+        (reply.status.0, reply.additional.words().count(), reply.data.to_vec())
+    };
+    let read = |name: &str, count| request::read(path(name), count).unwrap().bytes();
+    assert_eq!(ask(&read("Scalar", 1)), (0, 0, b"\xC4\x00\x2A\x00\x00\x00".to_vec()));
+    assert_eq!(ask(&read("Recipe", 1)), (0, 0, b"\xDA\x00\x08Standard".to_vec()), "length and characters");
+    let write = |name: &str, kind: &str, value: &str| {
+        let kind: Type = kind.parse().unwrap();
+        let data = kind.encode(Dialect::Micro800, &kind.parse_value(value).unwrap()).unwrap();
+        request::write(path(name), kind.head(Dialect::Micro800).unwrap(), 1, &data).unwrap().bytes()
+    };
+    assert_eq!(ask(&write("Recipe", "STRING", "\"Quick\"")), (0, 0, vec![]));
+    assert_eq!(ask(&read("Recipe", 1)).2, b"\xDA\x00\x05Quick");
+    for (request, status) in [
+        (read("Nobody", 1), 0x04),
+        (read("Scalar", 2), 0xFF),
+        (read("Arr[100]", 1), 0xFF),
+        (write("Scalar", "REAL", "1.5"), 0xFF),
+        (write("Limit", "DINT", "1"), 0x0F),
+        (request::write_bit(path("Scalar"), 4, 0, true).unwrap().bytes(), 0x08),
+    ] {
+        assert_eq!(ask(&request), (status, 0, vec![]), "{request:02X?}");
+    }
+    let (first, second) = (read("Scalar", 1), read("Enabled", 1));
+    let packet = MultipleServicePacket::new(vec![&first, &second]).unwrap().request().unwrap();
+    assert_eq!(ask(&packet.bytes()).0, 0x08, "a packet");
+}
+
+#[test]
+fn a_large_connection_carries_more_at_once() {
+    let table = r#"[{"name":"big","type":"DINT[900]"}]"#;
+    for (dialect, profile, count) in
+        [(Dialect::Logix, SimProfile::Logix, 900), (Dialect::Omron, SimProfile::Omron, 400)]
+    {
+        let memory = TagMemory::from_json(dialect, table).unwrap();
+        let config = SimConfig { tags: Some(memory.into()), max_size: 4_002, ..profile.config() };
+        let (mut device, mut connection, session, id) = connected(config, &LARGE_OPEN);
+        let read = request::read(path("big"), count).unwrap().bytes();
+        let reply = exchange(&mut device, &mut connection, &ud(session, id, 1, &read), at(0));
+        let message = connected_of(&reply).2;
+        assert_eq!((message[2], message.len()), (0, 6 + 4 * usize::from(count)), "{dialect:?}");
+    }
 }
 
 #[test]

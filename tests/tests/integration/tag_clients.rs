@@ -6,7 +6,7 @@ use std::net::SocketAddrV4;
 use std::path::Path;
 use std::process::Stdio;
 
-use cipdeck_tests::command::Service;
+use cipdeck_tests::command::{Service, cipdeck};
 use cipdeck_tests::wait::within;
 use cipdeck_tests::{PATIENCE, tools};
 use futures_util::TryStreamExt;
@@ -103,6 +103,30 @@ async fn rseip_reads_several_tags_in_a_packet_over_a_connection() {
     }
     assert_eq!(found, [42, 5]);
     connection.close().await.expect("Forward_Close is answered");
+}
+
+#[tokio::test]
+async fn a_file_of_tags_is_used_or_refused_with_line_and_tag() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let file = folder.path().join("plant.json");
+    let file = file.to_str().expect("a path in UTF-8");
+    let text = r#"[{ "name": "Füllstand", "type": "REAL", "value": 71.5 }]"#;
+    std::fs::write(file, text).expect("a file");
+    let device = Service::simulate("127.0.0.1:0", &["--profile", "logix", "--tags", file]).await;
+    let address: SocketAddrV4 = device.address.parse().expect("an IPv4 address");
+    let mut client = AbEipClient::new(address).with_connection_path(PortSegment::default());
+    let level: TagValue<f32> = client.read_tag(EPath::from_symbol("Füllstand")).await.expect("a REAL");
+    assert!((level.value - 71.5).abs() < f32::EPSILON);
+    std::fs::write(file, "[\n  { \"name\": \"Level\", \"type\": \"INT\", \"value\": 70000 }\n]")
+        .expect("a file");
+    let refused =
+        cipdeck(&["simulate", "--listen", "127.0.0.1:0", "--profile", "logix", "--tags", file]).await;
+    assert_eq!(refused.code, 2, "{refused:?}");
+    let expected = format!("{file}: line 2, Level: value: 70000 is outside of INT: -32768 to 32767");
+    assert!(refused.stderr.contains(&expected), "{refused:?}");
+    let refused = cipdeck(&["simulate", "--listen", "127.0.0.1:0", "--tags", file]).await;
+    assert_eq!(refused.code, 2, "{refused:?}");
+    assert!(refused.stderr.contains("--tags needs --profile"), "{refused:?}");
 }
 
 fn tag(name: &str) -> EPath {
