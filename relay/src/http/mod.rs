@@ -105,6 +105,8 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(groups::variables, groups::add))
         .routes(routes!(groups::csv, groups::add_csv))
         .routes(routes!(variables::replace, variables::delete))
+        .routes(routes!(variables::offer))
+        .routes(routes!(variables::write))
         .routes(routes!(blocks::list, blocks::create))
         .routes(routes!(blocks::show, blocks::replace, blocks::delete))
         .routes(routes!(blocks::status))

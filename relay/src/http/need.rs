@@ -109,6 +109,8 @@ pub(crate) const NEEDS: &[(&str, &str, Need)] = &[
     ("POST", "/api/v1/groups/{id}/variables.csv", Edit),
     ("PUT", "/api/v1/variables/{id}", Edit),
     ("DELETE", "/api/v1/variables/{id}", Edit),
+    ("POST", "/api/v1/variables/{id}/offer", Send),
+    ("POST", "/api/v1/variables/{id}/write", Send),
     ("GET", "/api/v1/blocks", Look),
     ("POST", "/api/v1/blocks", Edit),
     ("GET", "/api/v1/blocks/{id}", Look),

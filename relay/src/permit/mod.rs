@@ -19,7 +19,7 @@ pub(crate) use self::policy::{OpenError, record};
 pub(crate) use self::question::{Denied, Order, Question, Sending};
 pub(crate) use self::read_only::ReadOnly;
 pub(crate) use self::target_rule::{RuleError, TargetRule};
-pub(crate) use self::ticket::{Confirmed, Offer};
+pub(crate) use self::ticket::{Confirmed, GOOD_FOR, Offer};
 pub(crate) use self::window::NotOpened;
 
 use cipdeck_shared::api::{ActorKind, Role};

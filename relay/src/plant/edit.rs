@@ -231,7 +231,7 @@ impl Plant {
             };
             let variable = Variable { revision: variable.revision + 1, config, ..variable };
             inner.store.put_variable(variable.clone()).await?;
-            lock(&inner.entries).put_variable(variable.clone());
+            lock(&inner.entries).put_variable(&variable);
             inner.note(&of_variable(&actor, "changed", &variable));
             inner.told(device, Some(variable.group));
             Ok(variable)
@@ -346,8 +346,8 @@ fn fresh(variables: &[Variable]) -> Vec<Fresh> {
     ordered.iter().map(fresh).collect()
 }
 
-fn refused(findings: Vec<PlantFinding>) -> ApiError {
-    ApiError::Findings(plant_findings(&findings))
+fn refused(findings: impl AsRef<[PlantFinding]>) -> ApiError {
+    ApiError::Findings(plant_findings(findings.as_ref()))
 }
 
 fn same<T: PartialEq + std::fmt::Display>(address: &T, body: &T) -> Result<(), ApiError> {

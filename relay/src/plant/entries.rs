@@ -121,7 +121,7 @@ impl Entries {
     }
 
     /// A variable as it is now.
-    pub(super) fn put_variable(&mut self, variable: Variable) {
+    pub(super) fn put_variable(&mut self, variable: &Variable) {
         let Some(variables) = self.variables.get_mut(&variable.group) else { return };
         for there in variables.iter_mut().filter(|there| there.id == variable.id) {
             *there = variable.clone();

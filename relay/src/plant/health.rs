@@ -1,6 +1,7 @@
 //! Whether a device answers, and what it says of itself.
 
 use cipdeck_shared::api::{DeviceHealth, DeviceIdentity, HealthState};
+use cipdeck_shared::config::TargetPath;
 use cipdeck_shared::engine::{Cause, CauseKind};
 use cipdeck_shared::table::{self, Entry};
 use cipdeck_shared::wire::{
@@ -12,20 +13,25 @@ use crate::wall_clock;
 
 /// Why a device did not answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Lost {
+pub(crate) struct Lost {
     /// The relay must not ask it.
-    pub(super) is_denied: bool,
+    pub(crate) is_denied: bool,
     /// In words.
-    pub(super) reason: String,
+    pub(crate) reason: String,
 }
 
 /// Get_Attributes_All of Identity, which every device has. CIP Vol 1, 5A-2.
-pub(super) fn request() -> Result<MessageRouterRequest, TooLong> {
+pub(crate) fn request() -> Result<MessageRouterRequest, TooLong> {
     MessageRouterRequest::new(ServiceCode::GetAttributesAll, Epath::object(0x01, 1), Vec::new())
 }
 
+/// Bytes around a request that goes on along a route: Unconnected_Send with its path, two sizes, and a pad.
+pub(crate) fn wrapping(path: &TargetPath) -> usize {
+    14 + path.route.bytes().len()
+}
+
 /// The message router reply, or why there is none.
-pub(super) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
+pub(crate) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
     let ended = match ended {
         Ok(ended) => ended,
         Err(refused) => {
@@ -45,7 +51,7 @@ pub(super) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
 }
 
 /// Who the device says that it is.
-pub(super) fn identity(reply: &[u8]) -> Result<IdentityAttributes, String> {
+pub(crate) fn identity(reply: &[u8]) -> Result<IdentityAttributes, String> {
     let reply = MessageRouterReply::decode(reply).map_err(|error| error.to_string())?;
     if reply.status != GeneralStatus::Success {
         return Err(format!("it does not say what it is: {}", reply.status));

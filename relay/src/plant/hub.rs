@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Mutex;
 
-use cipdeck_shared::api::{DeviceStatus, GroupValues, VariableValue};
-use cipdeck_shared::config::{DeviceId, GroupId, VariableId};
+use cipdeck_shared::api::{DeviceStatus, GroupValues};
+use cipdeck_shared::config::{DeviceId, GroupId};
 use tokio::sync::watch;
 
 use super::point::{Point, Shown};
@@ -31,7 +31,7 @@ struct Latest {
 struct Rows {
     /// When variables were added, changed or removed.
     changed: u64,
-    rows: Vec<Row>,
+    all: Vec<Row>,
     places: HashMap<u32, usize>,
 }
 
@@ -84,18 +84,18 @@ impl Hub {
         self.change(|latest, version| {
             let is_new = !latest.groups.contains_key(&group);
             let rows = latest.groups.entry(group).or_default();
-            if !changed && !is_new && rows.rows.iter().map(|row| &row.shown).eq(&shown) {
+            if !changed && !is_new && rows.all.iter().map(|row| &row.shown).eq(&shown) {
                 return;
             }
             let mut before: HashMap<_, _> =
-                rows.rows.drain(..).map(|row| (row.shown.variable, (row.shown.address, row.point))).collect();
+                rows.all.drain(..).map(|row| (row.shown.variable, (row.shown.address, row.point))).collect();
             rows.places = shown.iter().enumerate().map(|(place, shown)| (shown.variable.0, place)).collect();
             let row = |shown: Shown| {
                 let point = before.remove(&shown.variable).filter(|(address, _)| *address == shown.address);
                 let point = point.map(|(_, point)| point).unwrap_or_default();
                 Row { shown, point, version }
             };
-            rows.rows = shown.into_iter().map(row).collect();
+            rows.all = shown.into_iter().map(row).collect();
             rows.changed = version;
         });
     }
@@ -110,7 +110,7 @@ impl Hub {
         self.change(|latest, version| {
             for (group, variable, point) in points {
                 let Some(rows) = latest.groups.get_mut(&group) else { continue };
-                let row = rows.places.get(&variable).and_then(|place| rows.rows.get_mut(*place));
+                let row = rows.places.get(&variable).and_then(|place| rows.all.get_mut(*place));
                 if let Some(row) = row {
                     (row.point, row.version) = (point, version);
                 }
@@ -121,7 +121,7 @@ impl Hub {
     /// All values of a group become the same, as when it is turned off.
     pub(super) fn put_all_points(&self, group: GroupId, point: impl Fn(&Point) -> Point) {
         self.change(|latest, version| {
-            for row in latest.groups.get_mut(&group).into_iter().flat_map(|rows| &mut rows.rows) {
+            for row in latest.groups.get_mut(&group).into_iter().flat_map(|rows| &mut rows.all) {
                 (row.point, row.version) = (point(&row.point), version);
             }
         });
@@ -150,14 +150,6 @@ impl Hub {
     /// All values of a group.
     pub(crate) fn values(&self, group: GroupId) -> Option<GroupValues> {
         lock(&self.latest).groups.get(&group).map(|rows| rows.newer(group, None))
-    }
-
-    /// One value.
-    pub(crate) fn value(&self, group: GroupId, variable: VariableId) -> Option<VariableValue> {
-        let latest = lock(&self.latest);
-        let rows = latest.groups.get(&group)?;
-        let row = rows.rows.get(*rows.places.get(&variable.0)?)?;
-        Some(row.shown.value(&row.point))
     }
 
     /// A viewer looks at these groups from now on. Those that it looked at before go on where they were.
@@ -216,7 +208,7 @@ impl Hub {
 
 impl Rows {
     fn newer(&self, group: GroupId, seen: Option<u64>) -> GroupValues {
-        let newer = self.rows.iter().filter(|row| seen.is_none_or(|seen| row.version > seen));
+        let newer = self.all.iter().filter(|row| seen.is_none_or(|seen| row.version > seen));
         GroupValues { group, values: newer.map(|row| row.shown.value(&row.point)).collect() }
     }
 }
@@ -224,6 +216,7 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use cipdeck_shared::api::Quality;
+    use cipdeck_shared::config::VariableId;
     use cipdeck_shared::tag::{Value, View};
 
     use super::*;

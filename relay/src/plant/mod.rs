@@ -1,15 +1,17 @@
 //! Devices, groups and variables: stored, polled by one task for each device however many people look, and written
 //! with a ticket.
 
+mod desk;
 mod edit;
 mod entries;
-mod health;
+pub(crate) mod health;
 mod hub;
 mod point;
 mod poll;
 mod work;
+mod write;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::future::Future;
 use std::sync::{Arc, Mutex};
 
@@ -22,7 +24,8 @@ use tokio_util::task::TaskTracker;
 
 use self::entries::Entries;
 pub(crate) use self::hub::{Hub, Seen};
-use self::poll::Work;
+use self::poll::{Work, limits};
+use self::write::Pending;
 use crate::error::ApiError;
 use crate::permit::Policy;
 use crate::runner::{Clock, Runner, lock};
@@ -43,6 +46,8 @@ struct Inner {
     edit: tokio::sync::Mutex<()>,
     /// What the task of each device has to do.
     polls: Mutex<BTreeMap<DeviceId, watch::Sender<Arc<Work>>>>,
+    /// Writes that have been offered, by their ticket.
+    pending: Mutex<HashMap<String, Pending>>,
     clock: Clock,
     tasks: TaskTracker,
     stop: CancellationToken,
@@ -63,6 +68,7 @@ impl Plant {
             entries: Mutex::new(entries),
             edit: tokio::sync::Mutex::default(),
             polls: Mutex::default(),
+            pending: Mutex::default(),
             clock: Clock::start(),
             tasks: TaskTracker::new(),
             stop: CancellationToken::new(),

@@ -106,8 +106,11 @@ struct Task {
 
 struct Flight {
     is_health: bool,
-    message: Pin<Box<dyn Future<Output = (Lane, Result<Ended, Refused>)> + Send>>,
+    message: Pin<Box<dyn Future<Output = Landed> + Send>>,
 }
+
+/// The lane comes back with what has become of its message.
+type Landed = (Lane, Result<Ended, Refused>);
 
 impl Task {
     fn new(shared: Shared, device: DeviceId) -> Self {
@@ -177,17 +180,11 @@ impl Task {
     fn start_polling(&mut self) {
         let Some(work) = self.work.clone().filter(|_| self.profile != Profile::Auto) else { return };
         let Ok(plan) = &work.plan else { return };
-        let way = way(plan, self.profile);
-        let mut limits = DeviceLimits::of(Dialect::of(self.profile), way.connected);
+        let mut limits = limits(plan, self.profile);
         // Blocks to the same device get their share of what it takes.
         let shared = self.shared.policy.messages_per_second();
         let share = if shared == 0 { u32::MAX } else { (shared / 4 * 3).max(1) };
         limits.max_requests_per_s = plan.max_requests_per_s.min(share);
-        if !way.connected && !plan.path.route.is_empty() {
-            // What wraps a request that goes on along a route: Unconnected_Send with its path, two sizes and a pad.
-            let wrapped = 14 + plan.path.route.bytes().len();
-            limits.request_max = limits.request_max.saturating_sub(wrapped);
-        }
         let (mut poller, now) = (Poller::new(limits), self.shared.clock.now());
         for group in &work.groups {
             poller.put_group(group.clone(), now);
@@ -360,7 +357,17 @@ pub(super) fn way(plan: &DevicePlan, profile: Profile) -> TagWay {
     TagWay { path: plan.path.clone(), profile, connected, timeout_ms: plan.timeout_ms }
 }
 
-async fn landed(flight: &mut Option<Flight>) -> (Lane, Result<Ended, Refused>) {
+/// What a device of this kind takes.
+pub(super) fn limits(plan: &DevicePlan, profile: Profile) -> DeviceLimits {
+    let connected = way(plan, profile).connected;
+    let mut limits = DeviceLimits::of(Dialect::of(profile), connected);
+    if !connected && !plan.path.route.is_empty() {
+        limits.request_max = limits.request_max.saturating_sub(health::wrapping(&plan.path));
+    }
+    limits
+}
+
+async fn landed(flight: &mut Option<Flight>) -> Landed {
     match flight {
         Some(flight) => flight.message.as_mut().await,
         None => std::future::pending().await,
@@ -374,7 +381,8 @@ async fn wait(until: Option<tokio::time::Instant>) {
     }
 }
 
-fn point(reading: &Reading, clock: Clock) -> Point {
+/// What the hub keeps of a reading.
+pub(super) fn point(reading: &Reading, clock: Clock) -> Point {
     let at = |instant: Instant| clock.at(instant);
     Point {
         quality: match reading.quality {

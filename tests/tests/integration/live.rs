@@ -215,6 +215,141 @@ async fn a_list_of_variables_with_one_bad_line_stores_nothing_and_a_file_comes_b
     relay.stop().await;
 }
 
+/// Asks for a ticket, and writes with it.
+async fn write(rest: &Rest, variable: &str, text: &str) -> (Value, cipdeck_tests::rest::Reply) {
+    let offer = rest.post(&format!("variables/{variable}/offer"), &json!({ "text": text })).await;
+    assert_eq!(offer.status, 200, "{text}: {offer:?}");
+    let ticket = json!({ "ticket": offer.body["ticket"] });
+    let written = rest.post(&format!("variables/{variable}/write"), &ticket).await;
+    let again = rest.post(&format!("variables/{variable}/write"), &ticket).await;
+    again.is_problem(403, "not_permitted");
+    (offer.body, written)
+}
+
+#[tokio::test]
+async fn a_variable_is_written_with_a_ticket_and_read_back() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "omron"]).await;
+    let relay = Relay::start().await;
+    let rest = &relay.rest;
+    let (device, group) = device(rest, &plc.address, "auto", 100).await;
+    let path = format!("groups/{group}/variables");
+    let new = json!({ "variables": [
+        { "name": "set", "address": "stSet", "type": "STRUCT{speed: REAL; run: BOOL; count: DINT}" },
+        { "parent_address": "stSet", "name": "speed", "address": "speed", "unit": "1/min", "writable": true,
+          "scale": { "factor": 2.0 }, "min": 0.0, "max": 4000.0 },
+        { "name": "percent", "address": "gnPercent", "writable": true },
+        { "name": "version", "address": "gcVersion", "writable": true },
+        { "name": "bit", "address": "elWord.3", "writable": true },
+        { "name": "element", "address": "arSet[2]", "writable": true },
+        { "name": "recipe", "address": "gsRecipe", "writable": true },
+        { "name": "fixed", "address": "TAG1" },
+    ]});
+    let all = made(rest, &path, &new).await;
+    let ids: Vec<_> = all.as_array().expect("variables").iter().map(id).collect();
+    let offer = |variable: usize, text: &'static str| {
+        let path = format!("variables/{}/offer", ids[variable]);
+        async move { rest.post(&path, &json!({ "text": text })).await }
+    };
+    offer(1, "3000").await.is_problem(403, "not_permitted");
+    assert_eq!(rest.post("window", &json!({})).await.status, 200);
+    offer(7, "FALSE").await.is_problem(403, "not_permitted");
+
+    let (offered, written) = write(rest, &ids[1], "3000.5").await;
+    assert_eq!(
+        (&offered["old"]["text"], &offered["new"]["text"]),
+        (&json!("3000 1/min"), &json!("3000.5 1/min"))
+    );
+    assert_eq!(offered["new"]["data"], "0088bb44", "1500.25 as a REAL");
+    assert_eq!((written.status, &written.body["is_done"]), (200, &json!(true)), "{written:?}");
+    assert_eq!(written.body["written"]["is_equal"], true, "{written:?}");
+    assert_eq!(written.body["value"]["text"], "3000.5 1/min", "{written:?}");
+    let (_, written) = write(rest, &ids[5], "33").await;
+    assert_eq!(written.body["value"]["value"], 33, "{written:?}");
+    let (_, written) = write(rest, &ids[6], "\"Größe 2\"").await;
+    assert_eq!(written.body["value"]["value"], "Größe 2", "{written:?}");
+
+    // What the device refuses, it refuses in its own words.
+    for (variable, text) in [(2, "101"), (3, "\"2.0\"")] {
+        let (_, written) = write(rest, &ids[variable], text).await;
+        assert_eq!((written.status, &written.body["is_done"]), (200, &json!(false)), "{written:?}");
+        assert!(written.body["reason"].as_str().is_some_and(|why| !why.is_empty()), "{written:?}");
+    }
+    // What cannot be meant is refused before.
+    for (variable, text) in [(1, "4001"), (1, "fast"), (2, "40000"), (4, "TRUE")] {
+        offer(variable, text).await.is_problem(422, "findings");
+    }
+
+    let log = rest.get(&format!("devices/{device}/writes")).await.body;
+    let entries = log.as_array().expect("entries");
+    assert_eq!(entries.len(), 5, "{log}");
+    assert_eq!(
+        (&entries[4]["old"], &entries[4]["new"]),
+        (&json!("3000 1/min"), &json!("3000.5 1/min")),
+        "{log}"
+    );
+    assert_eq!(
+        (&entries[4]["address"], &entries[4]["actor"]),
+        (&json!("stSet.speed"), &json!("local")),
+        "{log}"
+    );
+    let audit = rest.get("audit?event=write_permitted").await.body;
+    let record = &audit["records"].as_array().expect("records")[0];
+    assert!(record["name"].as_str().is_some_and(|name| name.contains("gcVersion")), "{record}");
+
+    // Between the offer and the write somebody turns the permission off.
+    let offered = offer(2, "60").await.body;
+    let mut percent = all[2].clone();
+    percent["writable"] = json!(false);
+    assert_eq!(rest.put(&format!("variables/{}", ids[2]), &percent).await.status, 200);
+    let late = json!({ "ticket": offered["ticket"] });
+    rest.post(&format!("variables/{}/write", ids[2]), &late).await.is_problem(403, "not_permitted");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_bit_of_a_logix_is_written_without_the_others() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "logix"]).await;
+    let relay = Relay::start().await;
+    let (_, group) = device(&relay.rest, &plc.address, "logix", 100).await;
+    let new = json!({ "variables": [
+        { "name": "bit", "address": "Scalar.0", "writable": true }, { "name": "all", "address": "Scalar", "writable": true },
+    ]});
+    let all = made(&relay.rest, &format!("groups/{group}/variables"), &new).await;
+    assert_eq!(relay.rest.post("window", &json!({})).await.status, 200);
+    let (_, written) = write(&relay.rest, &id(&all[0]), "TRUE").await;
+    assert_eq!(written.body["value"]["value"], true, "{written:?}");
+    let (offered, _) = write(&relay.rest, &id(&all[1]), "7").await;
+    assert_eq!(offered["old"]["text"], "43", "42 with its lowest bit");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn who_may_not_write_gets_no_ticket() {
+    use cipdeck_tests::managed::Managed;
+
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "omron"]).await;
+    let relay = Managed::start().await;
+    let engineer = relay.user("engineer").await;
+    let (_, group) = device(&engineer, &plc.address, "omron", 100).await;
+    let new = json!({ "variables": [{ "name": "set", "address": "gnPercent", "writable": true }] });
+    let all = made(&engineer, &format!("groups/{group}/variables"), &new).await;
+    let path = format!("variables/{}", id(&all[0]));
+    assert_eq!(engineer.post("window", &json!({})).await.status, 200);
+    let ticket = engineer.post(&format!("{path}/offer"), &json!({ "text": "51" })).await;
+    assert_eq!(ticket.status, 200, "{ticket:?}");
+    let others = [relay.user("viewer").await, relay.user("operator").await, relay.admin.clone()];
+    for other in &others {
+        other.post(&format!("{path}/offer"), &json!({ "text": "52" })).await.is_problem(403, "not_permitted");
+        let stolen = json!({ "ticket": ticket.body["ticket"] });
+        other.post(&format!("{path}/write"), &stolen).await.is_problem(403, "not_permitted");
+        other.put(&path, &all[0]).await.is_problem(403, "not_permitted");
+    }
+    // It is still there for whom it was made.
+    let mine = json!({ "ticket": ticket.body["ticket"] });
+    let written = engineer.post(&format!("{path}/write"), &mine).await;
+    assert_eq!(written.body["written"]["is_equal"], true, "{written:?}");
+}
+
 #[tokio::test]
 async fn a_message_that_is_none_is_answered_and_the_viewer_stays() {
     let relay = Relay::start().await;
