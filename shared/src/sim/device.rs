@@ -14,6 +14,7 @@ use super::counters::{Count, Counters};
 use super::fault::Fault;
 use super::module::SimModule;
 use super::objects::Objects;
+use super::profile::SimProfile;
 use super::request::{Answer, Head, Refusal, Request, service_of};
 use super::tags::Call;
 
@@ -167,6 +168,12 @@ impl Device {
         };
         let (manager, data) = (is_connection_manager(&head), head.data);
         let profile = self.config.profile;
+        // What is around a message that is handed on is not counted.
+        let is_wrapper = manager && service == ServiceCode::UnconnectedSend;
+        let is_too_long = profile != SimProfile::Generic && request.len() > profile.max_unconnected();
+        if is_too_long && !caller.connected && !is_wrapper {
+            return Answer::refusal(service, GeneralStatus::TooMuchData);
+        }
         let outcome = match service {
             ServiceCode::UnconnectedSend if manager && profile.routes() => {
                 return self.forward(module, data, caller, now);

@@ -101,7 +101,7 @@ impl SimProfile {
         }
     }
 
-    /// Longest reply to an unconnected message. Omron: aphyt n_series.py, MAXIMUM_LENGTH; the others: the size of a
+    /// Longest unconnected request, and longest reply to one. Omron: aphyt n_series.py, MAXIMUM_LENGTH; the others: the size of a
     /// connection that Forward_Open makes (libplctag).
     pub(super) const fn max_unconnected(self) -> usize {
         match self {

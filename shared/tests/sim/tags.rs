@@ -4,8 +4,8 @@ use cipdeck_shared::engine::time::Instant;
 use cipdeck_shared::sim::{Device, SimConfig, SimProfile, TagMemory};
 use cipdeck_shared::tag::{Dialect, TagData, TagName, Type, Types, Value, request};
 use cipdeck_shared::wire::{
-    Epath, GeneralStatus, LogicalKind, MessageRouterReply, MessageRouterRequest, MultipleServicePacket,
-    MultipleServiceReply, Segment, SimpleDataSegment,
+    Epath, GeneralStatus, LogicalKind, LogicalSegment, MessageRouterReply, MessageRouterRequest,
+    MultipleServicePacket, MultipleServiceReply, Segment, SimpleDataSegment,
 };
 
 use super::connections::connected;
@@ -349,6 +349,23 @@ fn a_micro800_answers_over_a_connection_and_refuses_without_the_vendors_words() 
     let (first, second) = (read("Scalar", 1), read("Enabled", 1));
     let packet = MultipleServicePacket::new(vec![&first, &second]).unwrap().request().unwrap();
     assert_eq!(ask(&packet.bytes()).0, 0x08, "a packet");
+}
+
+#[test]
+fn a_request_that_is_too_long_is_refused() {
+    for (profile, dialect, most) in
+        [(SimProfile::Logix, Dialect::Logix, 504), (SimProfile::Omron, Dialect::Omron, 502)]
+    {
+        let table = r#"[{"name":"bytes","type":"USINT[600]"}]"#;
+        let mut device = controller(dialect, table);
+        let head = "USINT".parse::<Type>().unwrap().head(dialect).unwrap();
+        for (length, status) in [(most - 16, 0), (most - 15, 0x15)] {
+            let first = Segment::Logical(LogicalSegment { kind: LogicalKind::Member, value: 0 });
+            let count = u16::try_from(length).unwrap();
+            let request = request::write(path("bytes").with(first), head, count, &vec![1; length]).unwrap();
+            assert_eq!(ask(&mut device, &request, at(0)).0, status, "{profile:?} {}", request.bytes().len());
+        }
+    }
 }
 
 #[test]
