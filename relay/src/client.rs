@@ -24,7 +24,7 @@ use cipdeck_shared::config::{BlockId, MsgCipGeneric, Target};
 use cipdeck_shared::engine::{BlockView, Exchange, TargetView};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 
-use crate::runner::{Observer, Refused, Runner, Tap, Trace};
+use crate::runner::{Lane, Observer, Refused, Runner, Tap, Trace};
 use crate::wall_clock;
 
 /// Sessions and connections that messages share. Clones share them, too.
@@ -91,6 +91,11 @@ impl Client {
         let block = BlockId(self.last.fetch_add(1, Ordering::Relaxed) + 1);
         self.runner.put(block, "", REVISION, Ok(plan));
         Message { runner: self.runner.clone(), block }
+    }
+
+    /// A block of its own for many messages.
+    pub(crate) fn lane(&self, name: &str) -> Lane {
+        self.runner.lane(name)
     }
 
     /// Cancels everything, and closes connections and sessions in order.

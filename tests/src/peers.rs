@@ -59,7 +59,7 @@ impl CiplinkAdapter {
     }
 }
 
-/// `python -m cpppo.server.enip` with one tag `T=DINT[10]`, ended when it is dropped.
+/// `python -m cpppo.server.enip` with some tags, ended when it is dropped.
 #[derive(Debug)]
 pub struct Cpppo {
     address: SocketAddr,
@@ -71,9 +71,14 @@ impl Cpppo {
     /// What Identity 1/1/7 answers.
     pub const PRODUCT_NAME: &str = "1756-L61/B LOGIX5561";
 
-    /// On a free port, which it prints once it listens.
+    /// With the tag `T=DINT[10]`.
     pub async fn start() -> Self {
-        let arguments = ["-m", "cpppo.server.enip", "-A", "-a", "127.0.0.1:0", "T=DINT[10]"];
+        Self::with_tags(&["T=DINT[10]"]).await
+    }
+
+    /// On a free port, which it prints once it listens.
+    pub async fn with_tags(tags: &[&str]) -> Self {
+        let arguments = [&["-m", "cpppo.server.enip", "-A", "-a", "127.0.0.1:0"], tags].concat();
         let process = Process::start(&tools::cpppo_python(), arguments);
         let port = process.line("cpppo prints its address", PATIENCE, tcp_port).await;
         let udp = process.line("cpppo prints its UDP address", PATIENCE, udp_port).await;

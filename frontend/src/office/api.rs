@@ -4,6 +4,7 @@ use cipdeck_shared::api::{
     NewAllowedTarget, NewAllowedWrite, NewToken, NewUser, NewViewLink, PasswordChange, ReadOnly, SetUp,
     SignIn, TokenCreated, UserChange, ViewLinkCreated,
 };
+use cipdeck_shared::config::Block;
 use gloo_net::http::Method;
 use serde::Serialize;
 
@@ -57,6 +58,12 @@ pub async fn add_write(write: NewAllowedWrite) -> Answered<()> {
 /// Turns the read-only switch on.
 pub async fn set_read_only() -> Answered<()> {
     send(Method::PUT, "read-only", &ReadOnly { read_only: true }).await
+}
+
+/// Changes a block.
+pub async fn replace_block(block: Block) -> Answered<Block> {
+    let resource = format!("blocks/{}", block.id);
+    rest::parse(&rest::ask(Method::PUT, &resource, Some(rest::json(&block)?)).await?)
 }
 
 /// Removes, ends or revokes what is at an address.

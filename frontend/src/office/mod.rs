@@ -12,6 +12,7 @@ mod allowed;
 pub mod api;
 mod audit;
 pub mod check;
+mod data;
 pub mod fetch;
 mod follow;
 mod history;
@@ -34,6 +35,7 @@ use yew::prelude::*;
 use self::{
     allowed::AllowedPage,
     audit::AuditPage,
+    data::DataPage,
     follow::use_writing,
     history::HistoryPage,
     i18n::tr,
@@ -129,6 +131,7 @@ fn show(page: Page, writing: std::rc::Rc<crate::net::Writing>, ask_again: Callba
         Page::Allowed => html! { <AllowedPage /> },
         Page::Audit => html! { <AuditPage /> },
         Page::History(block) => html! { <HistoryPage {block} /> },
+        Page::Data(block) => html! { <DataPage key={block.to_string()} {block} /> },
         Page::SignIn | Page::SetUp | Page::NotFound => not_found(),
     }
 }

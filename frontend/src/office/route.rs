@@ -28,6 +28,8 @@ pub enum Page {
     Audit,
     /// Runs of all blocks, or of one.
     History(Option<BlockId>),
+    /// The data of a block, field by field.
+    Data(BlockId),
     /// Everything else.
     NotFound,
 }
@@ -48,6 +50,9 @@ impl Page {
     /// The page of a path.
     pub fn read(path: &str) -> Self {
         let Some(rest) = path.trim_end_matches('/').strip_prefix("/office") else { return Self::NotFound };
+        if let Some(id) = rest.strip_prefix("/data/") {
+            return id.parse().map_or(Self::NotFound, Self::Data);
+        }
         match rest.strip_prefix("/history/") {
             Some(id) => id.parse().map_or(Self::NotFound, |id| Self::History(Some(id))),
             None => match rest {
@@ -80,6 +85,7 @@ impl Page {
             Self::Audit => "/audit",
             Self::History(None) => "/history",
             Self::History(Some(id)) => return format!("/office/history/{id}"),
+            Self::Data(id) => return format!("/office/data/{id}"),
             Self::NotFound => "/404",
         };
         format!("/office{rest}")

@@ -49,6 +49,12 @@ impl Exit {
     /// What was asked for beside the message failed. What is to be said has been said.
     pub(crate) const INCOMPLETE: Self = Self { code: 1, message: None };
 
+    /// The device refused a tag. What is to be said has been said.
+    pub(crate) const REFUSED: Self = Self { code: 3, message: None };
+
+    /// A tag got no answer. What is to be said has been said.
+    pub(crate) const LOST: Self = Self { code: 4, message: None };
+
     /// Error findings. What is to be said has been said.
     pub(crate) const FINDINGS: Self = Self { code: 2, message: None };
 

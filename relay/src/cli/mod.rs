@@ -14,6 +14,7 @@ mod run;
 mod send;
 mod serve;
 mod simulate;
+mod tags;
 mod user;
 
 use std::process::ExitCode;
@@ -61,6 +62,12 @@ enum Command {
     Send(send::Send),
     /// Run a block from a file: from here, or by the relay that --relay names.
     Run(run::Run),
+    /// Read tags of a controller from here; needs no relay.
+    Read(tags::Read),
+    /// Write a tag of a controller from here, and read it back.
+    Write(tags::Write),
+    /// List the tags of a controller.
+    Tags(tags::List),
     /// Find devices on the network: who answers to ListIdentity.
     Discover(discover::Discover),
     /// Who did what: verify the relay's records, or go on after a break.
@@ -104,6 +111,9 @@ impl Cli {
             Command::Simulate(simulate) => simulate.execute().await,
             Command::Send(send) => send.execute().await,
             Command::Run(run) => run.execute(&self.remote).await,
+            Command::Read(read) => read.execute().await,
+            Command::Write(write) => write.execute().await,
+            Command::Tags(list) => list.execute().await,
             Command::Discover(discover) => discover.execute().await,
             Command::Audit(audit) => audit.execute().await,
             Command::User(user) => user.execute().await,

@@ -125,6 +125,6 @@ fn duration(micros: Option<u64>) -> String {
 }
 
 /// Our own types have string keys only, which is all that could fail.
-fn json(value: &impl Serialize) -> String {
+pub(super) fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
 }

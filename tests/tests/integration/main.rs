@@ -34,6 +34,7 @@ mod security_model;
 mod shutdown;
 mod slow_viewer;
 mod tag_clients;
+mod tags;
 mod tls;
 mod websocket;
 mod who;
