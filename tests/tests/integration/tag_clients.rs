@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use cipdeck_tests::command::{Service, cipdeck};
+use cipdeck_tests::peers::cpppo_client;
 use cipdeck_tests::wait::within;
 use cipdeck_tests::{PATIENCE, tools};
 use futures_util::TryStreamExt;
@@ -106,6 +107,26 @@ async fn rseip_reads_several_tags_in_a_packet_over_a_connection() {
 }
 
 #[tokio::test]
+async fn cpppo_reads_and_writes_tags_of_a_logix_one_by_one_and_in_a_packet() {
+    for more in [&[][..], &["--multiple"]] {
+        let device = Service::simulate("127.0.0.1:0", &["--profile", "logix"]).await;
+        let tags = ["Scalar", "Arr[0-9]", "Setpoint=(REAL)1.5", "Setpoint", "Motor1.Count"];
+        let said = cpppo_client("client", &[&["-p", "-a", &device.address], more, &tags].concat()).await;
+        for line in [
+            "Scalar              == [42]",
+            "== [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]",
+            "<= [1.5]",
+            "== [1.5]",
+            "== [7]",
+        ] {
+            assert!(said.contains(line), "{line}: {said}");
+        }
+        let counted = counters(device).await;
+        assert_eq!(counted, format!("tag reads 4, tag writes 1, packets {}", more.len()), "{said}");
+    }
+}
+
+#[tokio::test]
 async fn a_file_of_tags_is_used_or_refused_with_line_and_tag() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let file = folder.path().join("plant.json");
@@ -135,8 +156,13 @@ fn tag(name: &str) -> EPath {
 
 /// Runs a script against a controller; what the controller has counted of its tags.
 async fn prints(profile: &str, script: &str, expected: &str) -> String {
-    let mut device = Service::simulate("127.0.0.1:0", &["--profile", profile]).await;
+    let device = Service::simulate("127.0.0.1:0", &["--profile", profile]).await;
     assert_prints(script, &device.address, expected).await;
+    counters(device).await
+}
+
+/// What it says of its tags when it is stopped.
+async fn counters(mut device: Service) -> String {
     device.process.interrupt();
     device.process.ended(PATIENCE).await;
     let last = |line: &str| line.starts_with("unconnected ").then(|| line.to_owned());
