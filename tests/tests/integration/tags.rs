@@ -122,3 +122,28 @@ async fn a_server_that_nobody_here_wrote_tells_its_tags_and_takes_values() {
     }
     assert_eq!(values(&read(&path, &["Arr[6]=INT[3]"]).await), [json!([0, 77, 0])]);
 }
+
+#[tokio::test]
+async fn a_controller_lists_its_tags_and_its_structures() {
+    for (profile, tag, structure, members) in [
+        ("omron", "stMotor", "Motor", "speed: REAL"),
+        ("logix", "Program:Main.Motor", "Motor", "Speed: REAL; Run: BOOL"),
+    ] {
+        let (_device, path) = controller(profile).await;
+        let ended = cipdeck(&["tags", &path, "motor", "--structures", "--json"]).await;
+        assert_eq!(ended.code, 0, "{ended:?}");
+        let all = ended.json();
+        let all = all.as_array().expect("a list");
+        let found = all.iter().find(|entry| entry["tag"] == tag).unwrap_or_else(|| panic!("{tag}: {all:?}"));
+        assert_eq!(found["type"], structure);
+        assert!(found["members"].as_str().is_some_and(|text| text.contains(members)), "{found}");
+        assert!(
+            all.iter()
+                .all(|entry| entry["tag"].as_str().is_some_and(|tag| tag.to_lowercase().contains("motor")))
+        );
+        let kind = found["members"].as_str().expect("members");
+        let read = read(&path, &[&format!("{tag}={kind}")]).await;
+        assert_eq!(read.code, 0, "what is listed can be read with its type: {read:?}");
+        assert!(values(&read)[0].is_object(), "{read:?}");
+    }
+}

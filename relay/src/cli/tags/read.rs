@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::controller::Controller;
 use super::{Place, Tag, tag};
-use crate::cli::{Exit, say};
+use crate::cli::{Exit, report, say};
 
 /// Tags that are read.
 #[derive(Debug, Args)]
@@ -37,7 +37,7 @@ impl Read {
             if place.json {
                 let report =
                     Report { path: &place.path, profile: controller.profile().word(), tags: &results };
-                say(&super::super::report::json(&report));
+                say(&report::json(&report));
             } else {
                 results.iter().for_each(Result::print);
             }
