@@ -238,7 +238,8 @@ impl Poller {
         now: Instant,
     ) -> Outcome {
         let Some(read) = self.read_of(job).cloned() else { return Outcome::Done };
-        let is_size = is_size(status.0) && (in_packet || status.0 == GeneralStatus::ReplyDataTooLarge);
+        // Too much data in a question that is alone is about the question.
+        let is_size = is_size(status.0) && (in_packet || status.0 != GeneralStatus::TooMuchData);
         if in_packet && is_size {
             return Outcome::TooLarge(job);
         }

@@ -47,6 +47,7 @@ const OFFSET: usize = 2;
 impl Poller {
     /// The request to send now; `None`: nothing is due, the device is not to be asked yet, or a reply is outstanding.
     pub fn poll_request(&mut self, now: Instant) -> Option<PollRequest> {
+        self.meter.tick(now);
         self.mark_stale(now);
         self.begin_due(now);
         if self.flight.is_some() {

@@ -21,7 +21,7 @@ pub struct Load {
     pub bad_items: u32,
     /// Whether the last round had to wait for `max_requests_per_s`.
     pub is_limited: bool,
-    /// Requests of the second before the last one.
+    /// Requests of the second before [`Poller::poll_request`](super::Poller::poll_request) was called last.
     pub last_second: u32,
 }
 
@@ -64,11 +64,16 @@ impl Meter {
         if let Some(round) = &mut self.round {
             round.requests += 1;
         }
-        while self.sent.front().is_some_and(|first| now.micros_since(*first) >= SECOND) {
-            self.sent.pop_front();
-        }
         if self.sent.len() < MAX_SENT {
             self.sent.push_back(now);
+        }
+        self.tick(now);
+    }
+
+    /// Forgets what is longer ago than a second.
+    pub(super) fn tick(&mut self, now: Instant) {
+        while self.sent.front().is_some_and(|first| now.micros_since(*first) >= SECOND) {
+            self.sent.pop_front();
         }
         self.load.last_second = u32::try_from(self.sent.len()).unwrap_or(u32::MAX);
     }
@@ -109,7 +114,10 @@ mod tests {
             ..Load::default()
         };
         assert_eq!(meter.load, expected);
-        meter.sent(Instant(3_000_000));
+        meter.sent(Instant(900_000));
+        meter.tick(Instant(1_002_000));
         assert_eq!(meter.load.last_second, 1);
+        meter.tick(Instant(9_000_000));
+        assert_eq!(meter.load.last_second, 0);
     }
 }

@@ -1,5 +1,6 @@
 //! One question to the device, and who waits for its answer.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::engine::time::{Instant, Millis};
@@ -110,7 +111,7 @@ impl Read {
     /// Neighbouring elements from `first` on.
     pub(super) fn run(first: TagName, element: &Type, count: u16, dialect: Dialect) -> Option<Self> {
         let dimensions = Dimensions::of_length(count.into())?;
-        let kind = Type::Array(alloc::boxed::Box::new(element.clone()), dimensions);
+        let kind = Type::Array(Box::new(element.clone()), dimensions);
         let kind = if count == 1 { element.clone() } else { kind };
         Self::new(first, count, Some(kind), dialect)
     }
