@@ -73,7 +73,7 @@ impl LiveViewer {
     }
 
     /// Reads one message.
-    async fn take(&mut self) {
+    pub async fn take(&mut self) {
         let message = loop {
             match self.socket.next().await.expect("the relay is there").expect("the relay speaks") {
                 Message::Text(text) => break serde_json::from_str::<Value>(&text).expect("JSON"),

@@ -37,7 +37,7 @@ impl Effort {
 const fn title(kind: Kind) -> &'static str {
     match kind {
         Kind::Ciplink => "ciplink's adapter",
-        Kind::Simulated => "cipdeck's simulated device",
+        Kind::Simulated | Kind::Logix => "cipdeck's simulated device",
     }
 }
 

@@ -7,13 +7,16 @@ mod compare;
 mod cyclic;
 mod history;
 mod load;
+mod plant;
 mod processor;
 mod relay;
 mod senders;
 mod sessions;
+mod tags;
 mod target;
 mod way;
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
@@ -53,6 +56,8 @@ enum Command {
         #[command(flatten)]
         load: Load,
     },
+    /// Reads tags of one target; the processor is the caller's.
+    Read { reader: tags::Reader, target: SocketAddr, warm_up: u64, measure: u64 },
     /// A relay on one processor until the input ends.
     Relay {
         processor: usize,
@@ -69,6 +74,10 @@ fn main() {
         Command::Send { sender, processor, load } => {
             processor::pin(processor);
             println!("{}", serde_json::to_string(&senders::run(sender, &load)).expect("numbers"));
+        }
+        Command::Read { reader, target, warm_up, measure } => {
+            let reads = tags::read(reader, target, warm_up, measure);
+            println!("{}", serde_json::to_string(&reads).expect("numbers"));
         }
         Command::Relay { processor, no_history } => relay::serve(processor, !no_history),
     }
@@ -89,6 +98,8 @@ fn all(quick: bool, only: &str, out: Option<PathBuf>) {
     add("websocket", &relay::table);
     add("history", &history::table);
     add("cyclic", &cyclic::table);
+    add("tags", &tags::table);
+    add("plant", &plant::table);
     if let Some(folder) = out {
         std::fs::create_dir_all(&folder).expect("a folder");
         std::fs::write(folder.join("speed.md"), text).expect("a file");

@@ -83,6 +83,14 @@ impl RelayProcess {
         let ticks: u64 = numbers.filter_map(|word| word.parse::<u64>().ok()).sum();
         Duration::from_millis(ticks * 10)
     }
+
+    /// Bytes of memory that it holds.
+    pub(crate) fn memory(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap_or_default();
+        let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse().unwrap_or_default();
+        kilobytes * 1_024
+    }
 }
 
 impl Drop for RelayProcess {

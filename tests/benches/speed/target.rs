@@ -4,7 +4,7 @@ use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::process::{Child, Command, Stdio};
 
-use cipdeck_shared::sim::SimConfig;
+use cipdeck_shared::sim::SimProfile;
 use cipdeck_tests::peers::CiplinkAdapter;
 use clap::ValueEnum;
 use tokio::net::TcpListener;
@@ -18,6 +18,8 @@ pub(crate) enum Kind {
     Ciplink,
     /// Our simulated device: tokio.
     Simulated,
+    /// The same as a Logix with tags.
+    Logix,
 }
 
 impl Kind {
@@ -26,6 +28,7 @@ impl Kind {
         match self {
             Self::Ciplink => "ciplink",
             Self::Simulated => "simulated",
+            Self::Logix => "logix",
         }
     }
 }
@@ -38,7 +41,8 @@ pub(crate) fn serve(kind: Kind, count: usize, on: usize) {
             let adapters: Vec<_> = (0..count).map(|_| CiplinkAdapter::start()).collect();
             say_and_wait(adapters.iter().map(CiplinkAdapter::address));
         }
-        Kind::Simulated => {
+        Kind::Simulated | Kind::Logix => {
+            let profile = if kind == Kind::Logix { SimProfile::Logix } else { SimProfile::Generic };
             let runtime =
                 tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("a runtime");
             let addresses: Vec<_> = (0..count)
@@ -46,7 +50,7 @@ pub(crate) fn serve(kind: Kind, count: usize, on: usize) {
                     let bound = runtime.block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, 0)));
                     let listener = bound.expect("a free port");
                     let address = listener.local_addr().expect("an address");
-                    runtime.spawn(cipdeck_relay::simulate(listener, SimConfig::default()));
+                    runtime.spawn(cipdeck_relay::simulate(listener, profile.config()));
                     address
                 })
                 .collect();
