@@ -12,6 +12,7 @@
 //! | [`api`] | what is asked of the relay |
 
 mod all;
+mod answer;
 pub mod api;
 mod connection;
 mod device;

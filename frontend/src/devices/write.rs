@@ -13,6 +13,7 @@ use yew::prelude::*;
 
 use self::{outcome::outcome, window::OpenWindow};
 use super::{
+    answer::problem_note,
     api,
     fields::Findings,
     i18n::tr,
@@ -22,11 +23,7 @@ use crate::{
     browser,
     hooks::use_second,
     kit::Dialog,
-    office::{
-        check,
-        fetch::use_action,
-        kit::{Entry, problem_note},
-    },
+    office::{check, fetch::use_action, kit::Entry},
     pages::block::whole,
 };
 

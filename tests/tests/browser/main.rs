@@ -4,6 +4,7 @@
 mod connections;
 mod cyclic;
 mod deck;
+mod devices;
 mod editor;
 mod first_start;
 mod looks;

@@ -5,17 +5,14 @@ use yew::prelude::*;
 
 use crate::{
     devices::{
+        answer::problem_note,
         api,
         fields::Findings,
         i18n::tr,
         route::{self, Page},
     },
     kit::Dialog,
-    office::{
-        check,
-        fetch::use_action,
-        kit::{Entry, problem_note},
-    },
+    office::{check, fetch::use_action, kit::Entry},
 };
 
 #[derive(Clone, PartialEq, Properties)]

@@ -5,10 +5,10 @@ use yew::prelude::*;
 
 use super::draft::DeviceDraft;
 use crate::{
-    devices::{api, i18n::tr},
+    devices::{answer::problem_note, api, i18n::tr},
     office::{
         fetch::use_action,
-        kit::{Entry, note, problem_note},
+        kit::{Entry, note},
     },
 };
 

@@ -6,15 +6,13 @@ use yew::prelude::*;
 use super::draft::{DeviceDraft, DeviceProblems};
 use crate::{
     devices::{
+        answer::problem_note,
         api,
         fields::{Findings, Said, area, bound, text},
         i18n::tr,
         route::{self, Page},
     },
-    office::{
-        fetch::use_action,
-        kit::{choice, problem_note},
-    },
+    office::{fetch::use_action, kit::choice},
 };
 
 #[derive(Clone, PartialEq, Properties)]

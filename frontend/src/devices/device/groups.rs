@@ -10,6 +10,7 @@ use yew::prelude::*;
 
 use crate::{
     devices::{
+        answer::problem_note,
         api,
         fields::Findings,
         i18n::tr,
@@ -20,7 +21,7 @@ use crate::{
     office::{
         check,
         fetch::use_action,
-        kit::{Entry, note, problem_note},
+        kit::{Entry, note},
     },
 };
 

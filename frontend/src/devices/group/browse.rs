@@ -20,9 +20,9 @@ use self::{
 };
 use super::lines::Lines;
 use crate::{
-    devices::{api, fields::Findings, i18n::tr},
+    devices::{answer::problem_note, api, fields::Findings, i18n::tr},
     kit::Dialog,
-    office::{fetch::use_action, kit::problem_note},
+    office::fetch::use_action,
     store::Shelf,
 };
 

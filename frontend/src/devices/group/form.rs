@@ -7,9 +7,9 @@ use yew::prelude::*;
 
 use super::{asked::Asked, draft::VariableDraft, lines::Lines};
 use crate::{
-    devices::{api, fields::Findings, i18n::tr, live::use_value},
+    devices::{answer::problem_note, api, fields::Findings, i18n::tr, live::use_value},
     kit::Dialog,
-    office::{fetch::use_action, kit::problem_note},
+    office::fetch::use_action,
 };
 
 mod fields;

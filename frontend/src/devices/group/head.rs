@@ -9,6 +9,7 @@ use yew::prelude::*;
 use super::asked::Asked;
 use crate::{
     devices::{
+        answer::problem_note,
         api,
         i18n::tr,
         live::use_device_status,
@@ -16,7 +17,7 @@ use crate::{
         route::{Page, link},
     },
     net::session,
-    office::{fetch::use_action, kit::problem_note},
+    office::fetch::use_action,
 };
 
 #[derive(Clone, PartialEq, Properties)]

@@ -16,12 +16,13 @@ use super::{
 use crate::{
     browser,
     devices::{
+        answer::problem_note,
         api,
         fields::{Findings, Said, area},
         i18n::tr,
     },
     kit::{Dialog, Shape},
-    office::{fetch::use_action, kit::problem_note},
+    office::fetch::use_action,
 };
 
 #[derive(Clone, PartialEq, Properties)]

@@ -4,13 +4,9 @@ use cipdeck_shared::config::{Group, GroupConfig};
 use yew::prelude::*;
 
 use crate::{
-    devices::{api, fields::Findings, i18n::tr},
+    devices::{answer::problem_note, api, fields::Findings, i18n::tr},
     kit::Dialog,
-    office::{
-        check,
-        fetch::use_action,
-        kit::{Entry, problem_note},
-    },
+    office::{check, fetch::use_action, kit::Entry},
 };
 
 #[derive(Clone, PartialEq, Properties)]

@@ -4,13 +4,9 @@ use cipdeck_shared::api::Role;
 use yew::prelude::*;
 
 use crate::{
-    devices::{i18n::tr, live::use_plant},
+    devices::{answer::problem_note, i18n::tr, live::use_plant},
     net::{rest, session},
-    office::{
-        check,
-        fetch::use_action,
-        kit::{Entry, problem_note},
-    },
+    office::{check, fetch::use_action, kit::Entry},
 };
 
 #[derive(Clone, PartialEq, Properties)]
