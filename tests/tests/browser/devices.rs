@@ -38,7 +38,7 @@ async fn makes_the_device(user: &mut Browser, address: &str) {
     user.fill("Name", "NX line 4").await;
     user.fill("Site", "Hall 3").await;
     user.fill("Path", "4,not an address").await;
-    user.fill("Kind of device", "Omron").await;
+    user.click_at("//select[@id='device-profile']/option[@value='omron']", "Omron").await;
     user.click_part("store-device").await;
     user.find("the finding at the path", "//*[@id='device-path-said'][@role='alert']", PATIENCE).await;
     user.shot("device-wrong").await;
@@ -111,7 +111,8 @@ async fn reads(user: &mut Browser) {
 /// The trend, the other pages, both themes, and narrow windows.
 async fn looks(user: &mut Browser) {
     user.click_at(&format!("{}//input[@type='checkbox']", row("grHWCs_PV")), "trend").await;
-    user.find("a line", "//*[name()='path'][@data-test='series'][contains(@d,'L')]", PATIENCE).await;
+    // Some seconds of it.
+    user.find("a line", "//*[name()='path'][@data-test='series'][string-length(@d) > 200]", PATIENCE).await;
     fits(user, "trend").await;
     user.click_part("theme").await;
     fits(user, "trend-other-theme").await;
