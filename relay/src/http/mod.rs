@@ -5,6 +5,7 @@ mod allow;
 mod assets;
 mod audit;
 mod blocks;
+mod browse;
 mod caller;
 mod commands;
 mod describe;
@@ -99,6 +100,8 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(devices::copy))
         .routes(routes!(devices::status))
         .routes(routes!(devices::writes))
+        .routes(routes!(browse::show, browse::begin, browse::end))
+        .routes(routes!(browse::structure))
         .routes(routes!(groups::create))
         .routes(routes!(groups::replace, groups::delete))
         .routes(routes!(groups::values))

@@ -206,3 +206,40 @@ impl<S: Sink<Message> + Unpin> Viewer<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Who writes a client copies from the document.
+    #[test]
+    fn every_example_of_live_values_is_a_message() {
+        let text = include_str!("../../../docs/LIVE.md");
+        let mut kinds = Vec::new();
+        for example in text.split("```json").skip(1).filter_map(|rest| rest.split("```").next()) {
+            let value: serde_json::Value = serde_json::from_str(example).unwrap();
+            let kind = value["type"].as_str().unwrap().to_owned();
+            let again = if kind == "watch" {
+                serde_json::to_value(serde_json::from_str::<LiveClientMessage>(example).unwrap()).unwrap()
+            } else {
+                serde_json::to_value(serde_json::from_str::<LiveServerMessage>(example).unwrap()).unwrap()
+            };
+            assert_eq!(again, value, "{example}");
+            kinds.push(kind);
+        }
+        for kind in ["hello", "access", "tree", "status", "variables", "values", "problem", "watch"] {
+            assert!(kinds.iter().any(|there| there == kind), "no example of {kind}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_message_says_why() {
+        let groups: Vec<_> = (0..65).map(|number| format!("\"g{number}\"")).collect();
+        let many = format!(r#"{{"type":"watch","groups":[{}]}}"#, groups.join(","));
+        for text in ["", "[]", r#"["watch",["g1"]]"#, r#"{"type":"run"}"#, many.as_str()] {
+            assert!(matches!(read(Message::text(text)), Err(Wrong::Message(_))), "{text}");
+        }
+        let watch = read(Message::text(r#" {"type":"watch","groups":["g1"]}"#));
+        assert!(matches!(watch, Ok(Some(groups)) if groups == [GroupId(1)]));
+    }
+}

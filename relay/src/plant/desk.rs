@@ -13,7 +13,7 @@ use super::limits;
 use super::poll::way;
 use crate::actor::Actor;
 use crate::permit::Order;
-use crate::runner::{Clock, Ended, Lane, Refused, Runner};
+use crate::runner::{Clock, Lane, Runner};
 
 /// Who speaks with which device, and how.
 #[derive(Debug)]
@@ -68,15 +68,11 @@ impl Desk {
         let mut poller = Poller::new(self.limits);
         poller.put_group(Group { id: 0, period: ONCE, on: true, items: vec![item] }, self.clock.now());
         while let Some(request) = poller.poll_request(self.clock.now()) {
-            let request = MessageRouterRequest::decode(&request.bytes).map_err(|it| lost(it.to_string()))?;
-            let ended = self.send(request, Order::read(actor.clone())).await?;
-            let reply = health::reply(&ended);
-            if let Err(lost) = &reply
-                && lost.is_denied
-            {
-                return Err(lost.clone());
-            }
-            let reply = reply.map_err(|lost| Failure::Lost { reason: lost.reason });
+            let reply = match self.ask(actor, &request.bytes).await {
+                Err(lost) if lost.is_denied => return Err(lost),
+                reply => reply,
+            };
+            let reply = reply.as_deref().map_err(|lost| Failure::Lost { reason: lost.reason.clone() });
             poller.handle_reply(self.clock.now(), reply);
         }
         Ok(poller.reading(0).cloned().unwrap_or_default())
@@ -99,13 +95,12 @@ impl Desk {
         Ok(self.lane.put(message))
     }
 
-    async fn send(
-        &mut self,
-        request: MessageRouterRequest,
-        order: Order,
-    ) -> Result<Result<Ended, Refused>, Lost> {
+    /// One message that reads: the message router reply, refusals included.
+    pub(super) async fn ask(&mut self, actor: &Actor, request: &[u8]) -> Result<Vec<u8>, Lost> {
+        let request = MessageRouterRequest::decode(request).map_err(|error| lost(error.to_string()))?;
         let message = MessagePlan::tag(&self.way, request).map_err(|error| lost(error.to_string()))?;
-        Ok(self.lane.send(message, Some(order)).await)
+        let ended = self.lane.send(message, Some(Order::read(actor.clone()))).await;
+        health::reply(&ended).map(<[u8]>::to_vec)
     }
 }
 

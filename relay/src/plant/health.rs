@@ -8,6 +8,7 @@ use cipdeck_shared::wire::{
     Epath, GeneralStatus, IdentityAttributes, MessageRouterReply, MessageRouterRequest, ServiceCode, TooLong,
 };
 
+use crate::error::ApiError;
 use crate::runner::{Ended, Refused};
 use crate::wall_clock;
 
@@ -18,6 +19,17 @@ pub(crate) struct Lost {
     pub(crate) is_denied: bool,
     /// In words.
     pub(crate) reason: String,
+}
+
+impl Lost {
+    /// For somebody who has asked for an answer of the device.
+    pub(super) fn into_error(self) -> ApiError {
+        if self.is_denied {
+            ApiError::NotPermitted(self.reason)
+        } else {
+            ApiError::Conflict(format!("the device does not answer: {}", self.reason))
+        }
+    }
 }
 
 /// Get_Attributes_All of Identity, which every device has. CIP Vol 1, 5A-2.

@@ -1,6 +1,7 @@
 //! Devices, groups and variables: stored, polled by one task for each device however many people look, and written
 //! with a ticket.
 
+mod browse;
 mod desk;
 mod edit;
 mod entries;
@@ -22,6 +23,7 @@ use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use self::browse::Browsing;
 use self::entries::Entries;
 pub(crate) use self::hub::{Hub, Seen};
 use self::poll::{Work, limits};
@@ -48,6 +50,8 @@ struct Inner {
     polls: Mutex<BTreeMap<DeviceId, watch::Sender<Arc<Work>>>>,
     /// Writes that have been offered, by their ticket.
     pending: Mutex<HashMap<String, Pending>>,
+    /// What devices are asked for, or were.
+    browses: Mutex<BTreeMap<DeviceId, Arc<Browsing>>>,
     clock: Clock,
     tasks: TaskTracker,
     stop: CancellationToken,
@@ -69,6 +73,7 @@ impl Plant {
             edit: tokio::sync::Mutex::default(),
             polls: Mutex::default(),
             pending: Mutex::default(),
+            browses: Mutex::default(),
             clock: Clock::start(),
             tasks: TaskTracker::new(),
             stop: CancellationToken::new(),

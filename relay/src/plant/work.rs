@@ -64,6 +64,9 @@ impl Inner {
     pub(super) fn forget(&self, device: DeviceId) {
         // Its task ends when nobody can give it work any more.
         lock(&self.polls).remove(&device);
+        if let Some(browsing) = lock(&self.browses).remove(&device) {
+            browsing.end();
+        }
         self.hub.remove_status(device);
     }
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use cipdeck_shared::api::{ReadValue, VariableValue, VariableWritten, WriteEntry, WriteTicket, Written};
-use cipdeck_shared::config::{Device, Profile, Variable, VariableId, write_hex};
+use cipdeck_shared::config::{Device, DeviceId, Profile, Variable, VariableId, write_hex};
 use cipdeck_shared::engine::poll::{Quality, Reading, Reason};
 use cipdeck_shared::plan::Severity;
 use cipdeck_shared::plan::plant::{self, DevicePlan, VariablePlan};
@@ -45,16 +45,17 @@ impl Plant {
     ) -> Result<WriteTicket, ApiError> {
         let (variable, device, plan, device_plan) = self.0.writable(id)?;
         let name = format!("{id} {} ({})", variable.config.name, plan.name);
-        let profile = self.0.profile(&device, &device_plan);
+        let profile = self.0.profile(device.id, &device_plan);
         let (runner, clock) = (&self.0.runner, self.0.clock);
         let desk = Desk::open(runner, clock, &name, &device_plan, profile, actor).await;
-        let mut desk = desk.map_err(unavailable)?;
-        let old = desk.variable(actor, &plan).await.map_err(unavailable)?;
+        let mut desk = desk.map_err(Lost::into_error)?;
+        let old = desk.variable(actor, &plan).await.map_err(Lost::into_error)?;
         let shown = shown(&variable, &plan);
         let (message, new) = match plan.name.bit() {
             None => whole(&desk, &plan, &old, text),
             Some(bit) => {
-                let number = desk.read(actor, &plan.name.without_bit(), None).await.map_err(unavailable)?;
+                let number =
+                    desk.read(actor, &plan.name.without_bit(), None).await.map_err(Lost::into_error)?;
                 one_bit(&desk, &plan, &number, bit, text)
             }
         }
@@ -108,8 +109,8 @@ impl Inner {
     }
 
     /// What the device is, as far as anybody knows.
-    pub(super) fn profile(&self, device: &Device, plan: &DevicePlan) -> Profile {
-        let found = self.hub.status(device.id).and_then(|status| Profile::of_word(&status.profile));
+    pub(super) fn profile(&self, device: DeviceId, plan: &DevicePlan) -> Profile {
+        let found = self.hub.status(device).and_then(|status| Profile::of_word(&status.profile));
         if plan.profile == Profile::Auto { found.unwrap_or_default() } else { plan.profile }
     }
 
@@ -329,13 +330,4 @@ fn wrong(why: impl Into<String>) -> ApiError {
         sub_error_id: None,
     };
     ApiError::Findings(vec![finding])
-}
-
-/// The device cannot be asked.
-fn unavailable(lost: Lost) -> ApiError {
-    if lost.is_denied {
-        ApiError::NotPermitted(lost.reason)
-    } else {
-        ApiError::Conflict(format!("the device does not answer: {}", lost.reason))
-    }
 }

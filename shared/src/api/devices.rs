@@ -131,13 +131,10 @@ pub struct WriteEntry {
 
 /// `POST /api/v1/devices/{id}/browse`: the device is asked what it has. One such question at a time and device; a new
 /// one ends the one before.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BrowseRequest {
-    /// Logix: what belongs to one program, `Program:Main`. Absent: everything.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub program: Option<String>,
     /// Also the device's own variables.
     #[serde(default)]
     pub system: bool,
@@ -261,7 +258,7 @@ mod tests {
         comes_back::<VariablesCsv>(r#"{"csv":"name,address\nPV,grHWCs_PV\n"}"#);
         comes_back::<NewValue>(r#"{"text":"12.5"}"#);
         comes_back::<WriteVariable>(r#"{"ticket":"9f2c"}"#);
-        comes_back::<BrowseRequest>(r#"{"program":"Program:Main","system":false}"#);
+        comes_back::<BrowseRequest>(r#"{"system":true}"#);
     }
 
     #[test]

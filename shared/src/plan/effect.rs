@@ -148,6 +148,15 @@ impl Object {
         {
             segments = before;
         }
+        // The tags of a program: its name, then the class of all tags. No list can name them by their number.
+        if let [names @ .., Segment::Logical(class_of), Segment::Logical(tag)] = segments
+            && class.is_none()
+            && *class_of == (LogicalSegment { kind: LogicalKind::Class, value: ClassCode::Symbol.0.into() })
+            && tag.kind == LogicalKind::Instance
+            && names.iter().all(|name| matches!(name, Segment::Symbol(_)))
+        {
+            segments = names;
+        }
         let rest_is_clear = segments.iter().all(|segment| match segment {
             Segment::Symbol(_) => class.is_none(),
             Segment::Logical(logical) => logical.kind == LogicalKind::Member,

@@ -7,6 +7,7 @@ use cipdeck_tests::command::Service;
 use cipdeck_tests::live::LiveViewer;
 use cipdeck_tests::relay::Relay;
 use cipdeck_tests::rest::Rest;
+use cipdeck_tests::wait::eventually;
 use futures_util::future::join_all;
 use serde_json::{Value, json};
 
@@ -320,6 +321,49 @@ async fn a_bit_of_a_logix_is_written_without_the_others() {
     assert_eq!(written.body["value"]["value"], true, "{written:?}");
     let (offered, _) = write(&relay.rest, &id(&all[1]), "7").await;
     assert_eq!(offered["old"]["text"], "43", "42 with its lowest bit");
+    relay.stop().await;
+}
+
+#[tokio::test]
+async fn a_device_is_asked_what_it_has_and_what_its_structures_are_made_of() {
+    let relay = Relay::start().await;
+    let rest = &relay.rest;
+    for (profile, name, structure) in [
+        ("omron", "grHWCs_PV", Some(("stMotor", "STRUCT{speed: REAL; run: BOOL; count: DINT}"))),
+        ("logix", "Scalar", None),
+        ("micro800", "", None),
+    ] {
+        let plc = Service::simulate("127.0.0.1:0", &["--profile", profile]).await;
+        let (device, _) = device(rest, &plc.address, "auto", 100).await;
+        let path = format!("devices/{device}/browse");
+        assert_eq!(rest.get(&path).await.body["state"], "idle");
+        assert_eq!(rest.post(&path, &json!({})).await.status, 202);
+        let page = eventually("everything is listed", PATIENCE, async || {
+            let page = rest.get(&path).await.body;
+            (page["state"] != "running").then_some(page)
+        })
+        .await;
+        assert_eq!(
+            (&page["state"], &page["requests"].is_u64()),
+            (&json!("done"), &true),
+            "{}",
+            page["reason"]
+        );
+        let symbols = page["symbols"].as_array().expect("symbols");
+        assert!(
+            !symbols.is_empty() && symbols.iter().any(|it| name.is_empty() || it["name"] == name),
+            "{page}"
+        );
+        let next = rest.get(&format!("{path}?from={}", page["next"])).await.body;
+        assert_eq!(next["found"], page["found"], "{next}");
+        if let Some((name, kind)) = structure {
+            let found = symbols.iter().find(|it| it["name"] == name).expect("the structure");
+            let of = found["structure"].as_str().expect("its id");
+            let told = rest.get(&format!("{path}/type?of={of}")).await;
+            assert_eq!((told.status, &told.body["type"]), (200, &json!(kind)), "{told:?}");
+        }
+        assert_eq!(rest.delete(&path).await.status, 204);
+    }
     relay.stop().await;
 }
 

@@ -143,6 +143,25 @@ fn what_two_readers_could_understand_differently_is_unknown() {
 }
 
 #[test]
+fn tags_of_a_program_are_listed_by_a_read_and_never_named_by_a_number() {
+    // pycomm3: Get_Instance_Attribute_List of Program:Main, class 6B, instance 0, attributes 1 and 2
+    let list = hex!("55 09 91 0C 50 72 6F 67 72 61 6D 3A 4D 61 69 6E 20 6B 24 00 02 00 01 00 02 00");
+    let [effect] = &effects(&list)[..] else { panic!("one effect") };
+    assert_eq!((effect.access, effect.class, effect.instance), (Access::Read, None, None));
+    // The same path written to.
+    let write = hex!("4D 09 91 0C 50 72 6F 67 72 61 6D 3A 4D 61 69 6E 20 6B 24 05 C4 00 01 00 00 00 00 00");
+    let [effect] = &effects(&write)[..] else { panic!("one effect") };
+    assert_eq!((effect.access, effect.class, effect.instance), (Access::Write, None, None));
+    // Another class, or something between.
+    for path in ["91 01 41 00 20 04 24 01", "91 01 41 00 28 01 20 6B 24 01", "91 01 41 00 20 6B 24 01 30 01"]
+    {
+        let path = crate::config::read_hex(path).unwrap();
+        let request = [&[0x55, u8::try_from(path.len() / 2).unwrap()], path.as_slice()].concat();
+        assert_eq!(access(&request), Access::Unknown, "{path:02x?}");
+    }
+}
+
+#[test]
 fn what_lies_too_deep_is_unknown() {
     let wrapped = |times| (0..times).fold(GET.to_vec(), |message, _| on(slot(0), &message));
     assert_eq!(access(&wrapped(MAX_DEPTH)), Access::Read);
