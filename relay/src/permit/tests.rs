@@ -359,7 +359,7 @@ async fn a_write_is_never_late_and_never_twice() {
     assert_eq!(ask((Some(7), None)), Ok(()));
     assert_eq!(ask((Some(7), Some(7))), Ok(()), "the same message, whose session was lost");
     assert_eq!(ask((Some(8), Some(7))), Err(Denied::Twice));
-    advance(ticket::GOOD_FOR).await;
+    advance(GOOD_FOR).await;
     assert_eq!(ask((Some(7), None)), Err(Denied::Late));
     assert_eq!(ask((Some(7), Some(7))), Err(Denied::Late), "also on another connection");
 }
@@ -382,7 +382,7 @@ async fn a_ticket_is_good_once_for_one_person_one_block_and_not_for_long() {
     assert_eq!(redeem(&ticket, &engineer, BLOCK), Ok(3));
     assert_eq!(redeem(&ticket, &engineer, BLOCK), Err(Denied::Used));
     let late = give().unwrap();
-    advance(ticket::GOOD_FOR).await;
+    advance(GOOD_FOR).await;
     assert_eq!(redeem(&late, &engineer, BLOCK), Err(Denied::Late));
 }
 
