@@ -3,17 +3,27 @@
 use cipdeck_shared::engine::browse::{Access, Browse, BrowseWhat, Symbol};
 use cipdeck_shared::engine::poll::{DeviceLimits, Failure, Group, Item, Poller, Quality};
 use cipdeck_shared::engine::time::{Instant, Millis};
+use cipdeck_shared::plan::effects;
 use cipdeck_shared::sim::{Device, SimProfile};
+use cipdeck_shared::table;
 use cipdeck_shared::tag::{Dialect, Type};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 const PROFILES: [SimProfile; 2] = [SimProfile::Logix, SimProfile::Omron];
 
+/// Who may only look asks this.
+fn assert_reads(request: &[u8]) {
+    for effect in effects(request) {
+        assert_eq!(effect.access, table::Access::Read, "{request:02x?} {effect:?}");
+    }
+}
+
 fn run(browse: &mut Browse, device: &mut Device) {
     for _ in 0..10_000 {
         let Some(request) = browse.next_request() else { break };
         assert_eq!(browse.next_request(), None, "one at a time");
+        assert_reads(&request);
         let reply = device.answer(&request, Instant::ZERO);
         browse.handle_reply(Ok(&reply));
     }
@@ -117,6 +127,7 @@ fn everything_that_is_listed_is_read_as_what_it_is_listed_as() {
             );
             for now in (1..3_000).map(|ms| Instant(1_000 * ms)) {
                 if let Some(request) = poller.poll_request(now) {
+                    assert_reads(&request.bytes);
                     let reply = device.answer(&request.bytes, now);
                     poller.handle_reply(now, Ok(&reply));
                 }

@@ -3,6 +3,7 @@
 
 mod connections;
 mod cyclic;
+mod data;
 mod deck;
 mod devices;
 mod editor;

@@ -110,7 +110,7 @@ fn Fields(props: &FieldsProps) -> Html {
                     { tr!("data.store") }
                 </button>
                 if is_changed {
-                    <span class="hint">{ tr!("data.unsaved") }</span>
+                    <span class="hint" data-test="unsaved">{ tr!("data.unsaved") }</span>
                 }
             </div>
         </form>
