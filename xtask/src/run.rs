@@ -30,14 +30,18 @@ pub(crate) struct Addresses {
     /// Where the simulated device listens.
     #[arg(long, default_value = "127.0.0.1:44818")]
     simulate: SocketAddr,
+    /// Where the simulated controller with tags listens, an Omron NX.
+    #[arg(long, default_value = "127.0.0.1:44819")]
+    controller: SocketAddr,
 }
 
-/// Builds what is missing, starts the simulated device and the relay, and waits for Ctrl-C.
+/// Builds what is missing, starts the simulated devices and the relay, and waits for Ctrl-C.
 pub(crate) fn all(report: &mut Report, preference: Preference, addresses: Addresses) -> Result<()> {
-    let Addresses { listen, simulate } = addresses;
+    let Addresses { listen, simulate, controller } = addresses;
     report.step("are the addresses free?", || {
         free(listen, "the page", "--listen")?;
-        free(simulate, "the simulated device", "--simulate")
+        free(simulate, "the simulated device", "--simulate")?;
+        free(controller, "the simulated controller", "--controller")
     })?;
     let wasm = toolchain::find(report, preference)?;
     frontend::build(report, &wasm, Profile::Quick)?;
@@ -54,7 +58,13 @@ pub(crate) fn all(report: &mut Report, preference: Preference, addresses: Addres
             simulate,
         )
     })?;
-    let demo = report.step("lay down the demo configuration", || demo_configuration(&data, simulate))?;
+    let mut tags = report.step("start the simulated controller", || {
+        let mut command = cipdeck();
+        command.arg("simulate").args(["--profile", "omron", "--listen", &controller.to_string()]);
+        Running::start("cipdeck simulate --profile omron", &mut command, controller)
+    })?;
+    let demo = report
+        .step("lay down the demo configuration", || demo_configuration(&data, &[simulate, controller]))?;
     let mut relay = report.step("start the relay", || {
         let mut command = cipdeck();
         command.arg("serve").args(["--listen", &listen.to_string()]).arg("--data").arg(&data);
@@ -63,25 +73,32 @@ pub(crate) fn all(report: &mut Report, preference: Preference, addresses: Addres
     })?;
     report.say(&format!("cipdeck is at     http://{listen}"));
     report.say(&format!("simulated device  {}   (as a block's Path)", block_path(simulate)));
+    report.say(&format!("simulated Omron   {}   (under Devices; it lists its tags)", block_path(controller)));
     report.say(&format!("blocks are kept   in {}", data.display()));
     report.say(
-        "demo              whoever is at this machine is an engineer, without signing in, and may reach the",
+        "demo              whoever is at this machine is an engineer, without signing in, and may reach the two",
     );
-    report.say(&format!("                  simulated device alone: {}", demo.display()));
+    report.say(&format!("                  simulated devices alone: {}", demo.display()));
     report.say("Ctrl-C stops all");
-    wait(&stop, &mut [&mut relay, &mut device])?;
+    wait(&stop, &mut [&mut relay, &mut device, &mut tags])?;
     report.step("stop the relay", || relay.stop())?;
-    report.step("stop the simulated device", || device.stop())
+    report.step("stop the simulated devices", || {
+        device.stop()?;
+        tags.stop()
+    })
 }
 
-/// What a real relay denies until an administrator allows it: acting without signing in, and a target.
-fn demo_configuration(data: &Path, simulate: SocketAddr) -> Result<PathBuf> {
+/// What a real relay denies until an administrator allows it: acting without signing in, and targets.
+fn demo_configuration(data: &Path, devices: &[SocketAddr]) -> Result<PathBuf> {
     fs::create_dir_all(data).with_context(|| format!("cannot make {}", data.display()))?;
     let path = data.join("demo.toml");
+    let allow = |device: &SocketAddr| {
+        format!("\n[[allow.target]]\ntarget = \"{device} via *\"\nnote = \"demo: a simulated device\"\n")
+    };
+    let allowed: String = devices.iter().map(allow).collect();
     let text = format!(
         "# Written by cargo xtask run: for a trial on this machine, not for a plant.\n\n\
-         [local]\nrole = \"engineer\"\n\n\
-         [[allow.target]]\ntarget = \"{simulate} via *\"\nnote = \"demo: the simulated device\"\n"
+         [local]\nrole = \"engineer\"\n{allowed}"
     );
     fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(path)
