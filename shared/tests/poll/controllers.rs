@@ -4,13 +4,16 @@ use cipdeck_shared::engine::browse::{Access, Browse, BrowseWhat, Symbol};
 use cipdeck_shared::engine::poll::{DeviceLimits, Failure, Group, Item, Poller, Quality};
 use cipdeck_shared::engine::time::{Instant, Millis};
 use cipdeck_shared::plan::effects;
-use cipdeck_shared::sim::{Device, SimProfile};
+use cipdeck_shared::sim::{Device, SimConnection, SimProfile};
 use cipdeck_shared::table;
 use cipdeck_shared::tag::{Dialect, Type};
+use cipdeck_shared::wire::{
+    ClassCode, Command, ConnectedMessage, ConnectionId, ConnectionParameters, ConnectionTriad, Encapsulation,
+    Epath, ForwardOpen, ForwardOpenReply, Header, MessageRouterReply, RegisterSession, RequestTimeout,
+    SendRrData, SenderContext, SessionHandle, TimeoutMultiplier, UnconnectedMessage,
+};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
-
-const PROFILES: [SimProfile; 2] = [SimProfile::Logix, SimProfile::Omron];
 
 /// Who may only look asks this.
 fn assert_reads(request: &[u8]) {
@@ -106,42 +109,124 @@ fn an_omron_tells_its_variables_and_its_structures() {
 
 #[test]
 fn everything_that_is_listed_is_read_as_what_it_is_listed_as() {
-    for profile in PROFILES {
-        for connected in [false, true] {
-            let dialect = profile.dialect().unwrap();
-            let symbols = list(profile, BrowseWhat::WithSystem);
-            let items: Vec<Item> = symbols
-                .iter()
-                .zip(1..)
-                .map(|(symbol, id)| {
-                    let kind =
-                        symbol.kind.clone().or_else(|| symbol.with_structure(&structure(profile, symbol)));
-                    Item { id, name: symbol.name.parse().unwrap(), kind: Some(kind.unwrap()) }
-                })
-                .collect();
-            let mut device = Device::new(profile.config());
-            let mut poller = Poller::new(DeviceLimits::of(dialect, connected));
-            poller.put_group(
-                Group { id: 1, period: Millis(1_000), on: true, items: items.clone() },
-                Instant(0),
-            );
-            for now in (1..3_000).map(|ms| Instant(1_000 * ms)) {
-                if let Some(request) = poller.poll_request(now) {
-                    assert_reads(&request.bytes);
-                    let reply = device.answer(&request.bytes, now);
-                    poller.handle_reply(now, Ok(&reply));
-                }
+    // a round is one message for each question on a Micro800
+    for (profile, connected, most) in [
+        (SimProfile::Logix, false, 130),
+        (SimProfile::Logix, true, 20),
+        (SimProfile::Omron, false, 12),
+        (SimProfile::Omron, true, 5),
+        (SimProfile::Micro800, true, 60),
+    ] {
+        let dialect = profile.dialect().unwrap();
+        let mut line = Line::new(profile, connected);
+        let symbols = line.list(dialect);
+        assert!(symbols.len() > 15, "{profile}: {}", symbols.len());
+        let items: Vec<Item> = symbols
+            .iter()
+            .zip(1..)
+            .map(|(symbol, id)| {
+                let structure = || structure(profile, symbol);
+                let kind = symbol.kind.clone().or_else(|| symbol.with_structure(&structure()));
+                Item { id, name: symbol.name.parse().unwrap(), kind: Some(kind.unwrap()) }
+            })
+            .collect();
+        let mut poller = Poller::new(DeviceLimits::of(dialect, connected));
+        poller.put_group(Group { id: 1, period: Millis(1_000), on: true, items: items.clone() }, Instant(0));
+        for now in (1..3_000).map(|ms| Instant(1_000 * ms)) {
+            if let Some(request) = poller.poll_request(now) {
+                assert_reads(&request.bytes);
+                let reply = line.ask(&request.bytes, now);
+                poller.handle_reply(now, Ok(&reply));
             }
-            for item in &items {
-                let reading = poller.reading(item.id).unwrap();
-                assert_eq!(reading.quality, Quality::Good, "{} {:?}", item.name, reading.reason);
-                assert_eq!(reading.kind, item.kind, "{}", item.name);
-            }
-            // The device's replies are those of unconnected messages, whatever the poller hopes for.
-            let load = poller.load();
-            assert!(load.requests_per_cycle <= 140, "{profile}: {load:?}");
         }
+        for item in &items {
+            let reading = poller.reading(item.id).unwrap();
+            assert_eq!(reading.quality, Quality::Good, "{profile} {} {:?}", item.name, reading.reason);
+            assert_eq!(reading.kind, item.kind, "{}", item.name);
+        }
+        let load = poller.load();
+        assert!(load.requests_per_cycle <= most, "{profile} {connected}: {load:?}");
     }
+}
+
+/// A device, with a connection to it or without.
+struct Line {
+    device: Device,
+    connection: Option<(SimConnection, Header, ConnectionId)>,
+    sequence: u16,
+}
+
+impl Line {
+    fn new(profile: SimProfile, connected: bool) -> Self {
+        let mut line = Self { device: Device::new(profile.config()), connection: None, sequence: 0 };
+        if connected {
+            line.connect(if profile == SimProfile::Omron { 1_994 } else { 4_002 });
+        }
+        line
+    }
+
+    fn connect(&mut self, size: u16) {
+        let mut connection = SimConnection::new();
+        let header = |command, session| Header::request(command, session, SenderContext::from(1));
+        let mut frame = Vec::new();
+        let register = RegisterSession::CURRENT.bytes();
+        Encapsulation::new(header(Command::RegisterSession, SessionHandle(0)), &register)
+            .unwrap()
+            .encode(&mut frame);
+        let reply = exchange(&mut connection, &mut self.device, &frame, Instant::ZERO);
+        let session = Encapsulation::decode(&reply).unwrap().header.session;
+        let open = ForwardOpen {
+            timeout: RequestTimeout::at_least(1_000),
+            o_t_id: ConnectionId(0),
+            t_o_id: ConnectionId(7),
+            triad: ConnectionTriad { serial: 1, vendor: 2, originator: 3 },
+            multiplier: TimeoutMultiplier(3),
+            o_t_rpi_us: 2_000_000,
+            o_t: ConnectionParameters::explicit(size),
+            t_o_rpi_us: 2_000_000,
+            t_o: ConnectionParameters::explicit(size),
+            transport: ForwardOpen::CLASS_3,
+            path: Epath::object(ClassCode::MessageRouter.0, 1),
+        };
+        let (mut frame, request) = (Vec::new(), open.request(true).unwrap().bytes());
+        let unconnected = header(Command::SendRRData, session);
+        UnconnectedMessage::new(&request).unwrap().encode(&unconnected, 3, &mut frame);
+        let reply = exchange(&mut connection, &mut self.device, &frame, Instant::ZERO);
+        let frame = Encapsulation::decode(&reply).unwrap();
+        let message = SendRrData::decode(frame.data()).unwrap().unconnected().unwrap().data.to_vec();
+        let reply = MessageRouterReply::decode(&message).unwrap();
+        let id = ForwardOpenReply::decode(reply.data).unwrap().o_t_id;
+        self.connection = Some((connection, header(Command::SendUnitData, session), id));
+    }
+
+    fn ask(&mut self, request: &[u8], now: Instant) -> Vec<u8> {
+        let Some((connection, header, id)) = &mut self.connection else {
+            return self.device.answer(request, now);
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut frame = Vec::new();
+        ConnectedMessage::new(request).unwrap().encode(header, *id, self.sequence, &mut frame);
+        let reply = exchange(connection, &mut self.device, &frame, now);
+        let frame = Encapsulation::decode(&reply).unwrap();
+        SendRrData::decode(frame.data()).unwrap().connected().unwrap().message.to_vec()
+    }
+
+    fn list(&mut self, dialect: Dialect) -> Vec<Symbol> {
+        let mut browse = Browse::new(dialect, BrowseWhat::WithSystem);
+        while let Some(request) = browse.next_request() {
+            let reply = self.ask(&request, Instant::ZERO);
+            browse.handle_reply(Ok(&reply));
+        }
+        assert_eq!(browse.error(), None);
+        browse.found().to_vec()
+    }
+}
+
+fn exchange(connection: &mut SimConnection, device: &mut Device, frame: &[u8], now: Instant) -> Vec<u8> {
+    connection.handle_input(device, frame, now);
+    let mut out = Vec::new();
+    connection.poll_transmit(&mut out, now);
+    out
 }
 
 #[test]

@@ -81,6 +81,17 @@ fn another_type_than_the_given_one_is_bad_and_says_which_it_is() {
 }
 
 #[test]
+fn a_bool_is_not_taken_from_numbers() {
+    let device = Device::new(Dialect::Logix).with("Arr", "DINT[4]", "[7, 7, 7, 7]");
+    let mut owner = Owner::new(device);
+    owner.group(1, 100, &["Arr[37] : BOOL", "Arr[2] : BOOL"]);
+    owner.run(50);
+    for item in [10, 11] {
+        assert_eq!(owner.reading(item).reason, Some(Reason::OtherType("DINT".into())));
+    }
+}
+
+#[test]
 fn a_structure_that_nobody_knows_is_its_bytes() {
     let mut owner =
         Owner::new(Device::new(Dialect::Logix).with("st", "STRUCT{x: INT; y: INT}", "{x: 1, y: 2}"));

@@ -25,6 +25,11 @@ impl Poller {
             work.learn_bools(job.read, data.head);
             return;
         }
+        if read.is_packed() && data.head.code != Elementary::Dword.code() {
+            // Its element 1 holds no BOOLs 32 to 63.
+            let reason = Reason::OtherType(said(&data, dialect));
+            return self.fail(job, &reason, true, now);
+        }
         let learned = if read.kind.is_none() { Type::of_data(dialect, &data, read.count) } else { None };
         let kind = read.kind.as_ref().or(learned.as_ref());
         match value_of(kind, &data, dialect) {
@@ -131,6 +136,11 @@ impl Poller {
 }
 
 impl Read {
+    /// Whether BOOLs are taken from a DWORD of their array.
+    fn is_packed(&self) -> bool {
+        matches!(self.takes.as_slice(), [Take { part: Part::Packed(_), .. }, ..])
+    }
+
     /// From now on this length is expected.
     fn saw(&mut self, data: &TagData<'_>) {
         let head = 6 + 2 * usize::from(data.head.handle.is_some());
@@ -160,7 +170,7 @@ fn is_counted_otherwise(read: &Read, data: &TagData<'_>, dialect: Dialect) -> bo
     if dialect != Dialect::Logix {
         return false;
     }
-    if matches!(read.takes.as_slice(), [Take { part: Part::Packed(_), .. }, ..]) {
+    if read.is_packed() {
         return data.head.code == Elementary::Bool.code();
     }
     let is_element = matches!(read.name.steps().last(), Some(Step::Index(indices)) if indices.len() == 1);
