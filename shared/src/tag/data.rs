@@ -4,11 +4,12 @@
 //! of the additional information; a Logix reads both bytes as one UINT, `A0 02` as 0x02A0 (pycomm3): the same bytes.
 
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::dialect::Dialect;
 use super::elementary::Elementary;
-use super::kind::{BOOL, Dimensions, Type};
+use super::kind::{BOOL, Dimensions, Structure, Type};
 use crate::wire::{DecodeError, DecodeErrorKind, Reader};
 
 /// Code of a structure.
@@ -86,6 +87,21 @@ impl Type {
         }
     }
 
+    /// The same type with the handle that came before its values, if it is a structure whose handle nobody knew, or an
+    /// array of such.
+    #[must_use]
+    pub fn told(&self, handle: u16) -> Self {
+        match self {
+            Self::Structure(structure) if structure.handle.is_none() => {
+                Self::Structure(Arc::new(Structure { handle: Some(handle), ..(**structure).clone() }))
+            }
+            Self::Array(element, dimensions) => {
+                Self::Array(Box::new(element.told(handle)), dimensions.clone())
+            }
+            other => other.clone(),
+        }
+    }
+
     /// What a reply says of its type by itself, for a request of so many elements. `None` for structures that nobody
     /// knows, and for codes that nobody knows.
     pub fn of_data(dialect: Dialect, data: &TagData<'_>, elements: u16) -> Option<Self> {
@@ -97,7 +113,8 @@ impl Type {
             _ => return None,
         };
         if elements <= 1 && element != Self::String(None) {
-            let size = element.size(dialect);
+            // BOOLs of an array come in a byte each.
+            let size = if element == BOOL { 1 } else { element.size(dialect) };
             // A whole array comes without being asked for: an Omron gives it when no element is named.
             let many = data.data.len() / size.max(1);
             let is_padded = size == 1 && data.data.len() == 2;

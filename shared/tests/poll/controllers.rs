@@ -6,7 +6,7 @@ use cipdeck_shared::engine::time::{Instant, Millis};
 use cipdeck_shared::plan::effects;
 use cipdeck_shared::sim::{Device, SimConnection, SimProfile};
 use cipdeck_shared::table;
-use cipdeck_shared::tag::{Dialect, Type};
+use cipdeck_shared::tag::{Dialect, TagName, Type, request};
 use cipdeck_shared::wire::{
     ClassCode, Command, ConnectedMessage, ConnectionId, ConnectionParameters, ConnectionTriad, Encapsulation,
     Epath, ForwardOpen, ForwardOpenReply, Header, MessageRouterReply, RegisterSession, RequestTimeout,
@@ -227,6 +227,29 @@ fn exchange(connection: &mut SimConnection, device: &mut Device, frame: &[u8], n
     let mut out = Vec::new();
     connection.poll_transmit(&mut out, now);
     out
+}
+
+#[test]
+fn a_structure_that_somebody_has_described_is_read_with_the_handle_that_writing_needs() {
+    let logix = "STRUCT{Speed: REAL; Run: BOOL; Fault: BOOL; Count: DINT; Mode: SINT; Ready: BOOL; Hist: INT[4]; Name: STRING}";
+    for (profile, name, kind) in [
+        (SimProfile::Omron, "stSet", "STRUCT{speed: REAL; run: BOOL; count: DINT}"),
+        (SimProfile::Logix, "Motor1", logix),
+    ] {
+        let (dialect, mut device) = (profile.dialect().unwrap(), Device::new(profile.config()));
+        let mut poller = Poller::new(DeviceLimits::of(dialect, false));
+        let item = Item { id: 1, name: name.parse().unwrap(), kind: Some(kind.parse().unwrap()) };
+        poller.put_group(Group { id: 1, period: Millis(100), on: true, items: vec![item] }, Instant::ZERO);
+        let request = poller.poll_request(Instant::ZERO).unwrap();
+        poller.handle_reply(Instant::ZERO, Ok(&device.answer(&request.bytes, Instant::ZERO)));
+        let reading = poller.reading(1).unwrap();
+        assert_eq!(reading.quality, Quality::Good, "{:?}", reading.reason);
+        let (kind, value) = (reading.kind.clone().unwrap(), reading.value.clone().unwrap());
+        let data = kind.encode(dialect, &value).unwrap();
+        let head = kind.head(dialect).expect("the handle was told");
+        let write = request::write(name.parse::<TagName>().unwrap().path(), head, 1, &data).unwrap();
+        assert_eq!(device.answer(&write.bytes(), Instant::ZERO)[2], 0, "{name} is written");
+    }
 }
 
 #[test]

@@ -35,14 +35,14 @@ impl Poller {
         match value_of(kind, &data, dialect) {
             Ok(value) => {
                 let kind = kind.cloned();
-                self.share(job, value, kind.as_ref(), now);
+                self.share(job, value, kind.as_ref(), data.head.handle, now);
             }
             Err(reason) => self.fail(job, &reason, true, now),
         }
     }
 
     /// Gives everybody their part.
-    fn share(&mut self, job: Job, value: Value, kind: Option<&Type>, now: Instant) {
+    fn share(&mut self, job: Job, value: Value, whole: Option<&Type>, handle: Option<u16>, now: Instant) {
         let Some(work) = self.groups.get_mut(&job.group) else { return };
         let Work { tags, reads, is_outdated, .. } = work;
         let Some(read) = reads.get_mut(job.read) else { return };
@@ -51,7 +51,7 @@ impl Poller {
         let is_only = read.takes.len() == 1;
         for take in &read.takes {
             let Some(tag) = tags.get_mut(take.tag) else { continue };
-            match part_of(&mut value, kind, take.part, tag, is_only) {
+            match part_of(&mut value, whole, take.part, tag, is_only) {
                 Ok((value, kind)) => {
                     if tag.item.kind.is_none()
                         && tag.item.name.bit().is_none()
@@ -60,7 +60,7 @@ impl Poller {
                         tag.learned = kind.cloned();
                         *is_outdated = true;
                     }
-                    tag.reading.good(value, kind, now);
+                    tag.reading.good(value, kind, handle.filter(|_| is_of(whole, kind)), now);
                 }
                 Err(reason) => {
                     tag.reading.bad(&reason);
@@ -257,6 +257,12 @@ fn part_of<'a>(
             }
         }
     }
+}
+
+/// Whether the handle of a whole is that of a part: it is the whole, or an element of it.
+fn is_of(whole: Option<&Type>, part: Option<&Type>) -> bool {
+    let same = |whole: &Type, part: &Type| core::ptr::eq(whole, part) || core::ptr::eq(whole.element(), part);
+    whole.zip(part).is_some_and(|(whole, part)| same(whole, part))
 }
 
 /// Whether what was given for a member is what its whole says: lengths of texts and names of structures aside.

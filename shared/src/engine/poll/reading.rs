@@ -84,7 +84,8 @@ pub struct Reading {
 }
 
 impl Reading {
-    pub(super) fn good(&mut self, value: Value, kind: Option<&Type>, now: Instant) {
+    /// `handle`: what came before the value, if it is a structure; writing it needs it.
+    pub(super) fn good(&mut self, value: Value, kind: Option<&Type>, handle: Option<u16>, now: Instant) {
         self.quality = Quality::Good;
         self.reason = None;
         self.at = Some(now);
@@ -92,6 +93,8 @@ impl Reading {
             self.value = Some(value);
             self.changed = Some(now);
         }
+        let told = kind.zip(handle).map(|(kind, handle)| kind.told(handle));
+        let kind = told.as_ref().or(kind);
         if self.kind.as_ref() != kind {
             self.kind = kind.cloned();
         }
