@@ -60,7 +60,7 @@ pub fn effects(request: &[u8]) -> Vec<Effect> {
 fn look(bytes: &[u8], route: &Epath, depth: usize, found: &mut Vec<Effect>) {
     let read = MessageRouterRequest::decode(bytes);
     let Some((request, object)) = read.ok().and_then(|request| {
-        let object = Object::of(request.path()).or_else(|| Object::of_program(&request))?;
+        let object = Object::of(request.path())?;
         Some((request, object))
     }) else {
         let service = ServiceCode(bytes.first().copied().unwrap_or_default());
@@ -165,19 +165,6 @@ impl Object {
         });
         let small = |number: Option<u32>| number.map(u16::try_from).transpose().ok();
         rest_is_clear.then_some(Self { class: small(class)?, instance, attribute: small(attribute)? })
-    }
-
-    /// The list of a program's tags: `Program:Main`, then class and instance of the symbols. Source: pycomm3
-    /// `get_tag_list`. No other service is known to be sent so.
-    fn of_program(request: &MessageRouterRequest) -> Option<Self> {
-        let [Segment::Symbol(_), rest @ ..] = request.path().segments() else { return None };
-        let rest = rest.iter().cloned().fold(Epath::default(), Epath::with);
-        let object = Self::of(&rest)?;
-        let lists = request.service() == ServiceCode::GetInstanceAttributeList
-            && object.class == Some(ClassCode::Symbol.0)
-            && object.instance.is_some()
-            && object.attribute.is_none();
-        lists.then_some(object)
     }
 
     fn gets(self, service: ServiceCode, route: &Epath) -> Effect {

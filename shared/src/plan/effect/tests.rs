@@ -215,21 +215,7 @@ mod any_bytes {
 }
 
 #[test]
-fn a_programs_tags_are_listed_and_nothing_else_is_asked_of_a_program() {
-    // pycomm3 get_tag_list: "Program:A" and instance 0 of class 6B
-    let program = hex!("91 09 50 72 6F 67 72 61 6D 3A 41 00 20 6B 24 00");
-    let ask = |service: u8, path: &[u8]| {
-        [&[service, u8::try_from(path.len() / 2).unwrap()][..], path, &[2, 0, 1, 0, 2, 0]].concat()
-    };
-    assert_eq!(access(&ask(0x55, &program)), Access::Read);
-    let listed = effects(&ask(0x55, &program));
-    assert_eq!((listed.len(), listed[0].class, listed[0].instance), (1, Some(0x6B), Some(0)));
-    assert_eq!(access(&ask(0x4D, &program)), Access::Unknown);
-    assert_eq!(access(&ask(0x01, &program)), Access::Unknown);
-    let attribute = [&program[..], &hex!("30 01")].concat();
-    assert_eq!(access(&ask(0x55, &attribute)), Access::Unknown);
-    let other = hex!("91 01 41 00 20 04 24 64");
-    assert_eq!(access(&ask(0x55, &other)), Access::Unknown);
-    // and what a structure is made of
+fn what_a_structure_is_made_of_is_read() {
+    // pycomm3 _read_template: Read Tag of class 6C
     assert_eq!(access(&hex!("4C 02 20 6C 24 05 00 00 00 00 40 00")), Access::Read);
 }
