@@ -7,6 +7,8 @@ use futures_util::{SinkExt as _, StreamExt as _};
 use serde_json::{Value, json};
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
+use tokio_tungstenite::tungstenite::protocol::CloseFrame;
 use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 
 use crate::wait::within;
@@ -28,8 +30,16 @@ pub struct LiveViewer {
 impl LiveViewer {
     /// Connects, and has seen `hello`, `access` and the tree.
     pub async fn connect(address: impl std::fmt::Display) -> Self {
-        let (socket, _) =
-            connect_async(format!("ws://{address}/api/v1/live")).await.expect("the relay takes a WebSocket");
+        Self::connect_with(address, &[]).await
+    }
+
+    /// Connects with more headers: a cookie, a token.
+    pub async fn connect_with(address: impl std::fmt::Display, headers: &[(&'static str, &str)]) -> Self {
+        let mut request = format!("ws://{address}/api/v1/live").into_client_request().expect("an address");
+        for (name, value) in headers {
+            request.headers_mut().insert(*name, value.parse().expect("a value of a header"));
+        }
+        let (socket, _) = connect_async(request).await.expect("the relay takes a WebSocket");
         let mut viewer = Self {
             socket,
             last: BTreeMap::new(),
@@ -67,6 +77,20 @@ impl LiveViewer {
                     return value;
                 }
                 self.take().await;
+            }
+        })
+        .await
+    }
+
+    /// Reads until the relay closes, and why it does.
+    pub async fn closed(&mut self, limit: Duration) -> Option<CloseFrame> {
+        within("the relay closes", limit, async {
+            loop {
+                match self.socket.next().await {
+                    Some(Ok(Message::Close(frame))) => return frame,
+                    Some(Ok(_)) => {}
+                    other => panic!("the end of the connection without a word: {other:?}"),
+                }
             }
         })
         .await

@@ -126,7 +126,8 @@ impl Hub {
         call(&mut latest);
         let version = latest.version;
         drop(latest);
-        self.version.send_replace(version);
+        // Messages that are nobody's block, as those of polls, wake nobody.
+        self.version.send_if_modified(|told| std::mem::replace(told, version) != version);
     }
 }
 

@@ -2,7 +2,7 @@
 //! viewer asks for what is newer than the last thing that it has seen.
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use cipdeck_shared::api::{DeviceStatus, GroupValues};
 use cipdeck_shared::config::{DeviceId, GroupId};
@@ -35,10 +35,11 @@ struct Rows {
     places: HashMap<u32, usize>,
 }
 
-#[derive(Debug)]
+/// Shared, so that it is put into words without anybody waiting.
+#[derive(Clone, Debug)]
 struct Row {
-    shown: Shown,
-    point: Point,
+    shown: Arc<Shown>,
+    point: Arc<Point>,
     version: u64,
 }
 
@@ -84,16 +85,15 @@ impl Hub {
         self.change(|latest, version| {
             let is_new = !latest.groups.contains_key(&group);
             let rows = latest.groups.entry(group).or_default();
-            if !changed && !is_new && rows.all.iter().map(|row| &row.shown).eq(&shown) {
+            if !changed && !is_new && rows.all.iter().map(|row| &*row.shown).eq(&shown) {
                 return;
             }
-            let mut before: HashMap<_, _> =
-                rows.all.drain(..).map(|row| (row.shown.variable, (row.shown.address, row.point))).collect();
+            let mut before: HashMap<_, _> = rows.all.drain(..).map(|row| (row.shown.variable, row)).collect();
             rows.places = shown.iter().enumerate().map(|(place, shown)| (shown.variable.0, place)).collect();
             let row = |shown: Shown| {
-                let point = before.remove(&shown.variable).filter(|(address, _)| *address == shown.address);
-                let point = point.map(|(_, point)| point).unwrap_or_default();
-                Row { shown, point, version }
+                let row = before.remove(&shown.variable).filter(|row| row.shown.address == shown.address);
+                let point = row.map(|row| row.point).unwrap_or_default();
+                Row { shown: Arc::new(shown), point, version }
             };
             rows.all = shown.into_iter().map(row).collect();
             rows.changed = version;
@@ -112,7 +112,7 @@ impl Hub {
                 let Some(rows) = latest.groups.get_mut(&group) else { continue };
                 let row = rows.places.get(&variable).and_then(|place| rows.all.get_mut(*place));
                 if let Some(row) = row {
-                    (row.point, row.version) = (point, version);
+                    (row.point, row.version) = (Arc::new(point), version);
                 }
             }
         });
@@ -122,7 +122,7 @@ impl Hub {
     pub(super) fn put_all_points(&self, group: GroupId, point: impl Fn(&Point) -> Point) {
         self.change(|latest, version| {
             for row in latest.groups.get_mut(&group).into_iter().flat_map(|rows| &mut rows.all) {
-                (row.point, row.version) = (point(&row.point), version);
+                (row.point, row.version) = (Arc::new(point(&row.point)), version);
             }
         });
     }
@@ -149,7 +149,8 @@ impl Hub {
 
     /// All values of a group.
     pub(crate) fn values(&self, group: GroupId) -> Option<GroupValues> {
-        lock(&self.latest).groups.get(&group).map(|rows| rows.newer(group, None))
+        let rows = lock(&self.latest).groups.get(&group).map(|rows| rows.newer(None))?;
+        Some(in_words(group, &rows))
     }
 
     /// A viewer looks at these groups from now on. Those that it looked at before go on where they were.
@@ -165,6 +166,7 @@ impl Hub {
         let now = latest.version;
         let mut news =
             News { tree: seen.tree.is_none_or(|version| version < latest.tree), ..News::default() };
+        let mut newer = Vec::new();
         seen.tree = Some(now);
         seen.groups.retain(|group, _| latest.groups.contains_key(group));
         for (group, version) in &mut seen.groups {
@@ -172,12 +174,14 @@ impl Hub {
             if version.is_some_and(|version| version < rows.changed) {
                 news.variables.push(*group);
             }
-            let values = rows.newer(*group, *version);
-            if version.is_none() || !values.values.is_empty() {
-                news.values.push(values);
+            let rows = rows.newer(*version);
+            if version.is_none() || !rows.is_empty() {
+                newer.push((*group, rows));
             }
             *version = Some(now);
         }
+        drop(latest);
+        news.values = newer.iter().map(|(group, rows)| in_words(*group, rows)).collect();
         news
     }
 
@@ -207,10 +211,13 @@ impl Hub {
 }
 
 impl Rows {
-    fn newer(&self, group: GroupId, seen: Option<u64>) -> GroupValues {
-        let newer = self.all.iter().filter(|row| seen.is_none_or(|seen| row.version > seen));
-        GroupValues { group, values: newer.map(|row| row.shown.value(&row.point)).collect() }
+    fn newer(&self, seen: Option<u64>) -> Vec<Row> {
+        self.all.iter().filter(|row| seen.is_none_or(|seen| row.version > seen)).cloned().collect()
     }
+}
+
+fn in_words(group: GroupId, rows: &[Row]) -> GroupValues {
+    GroupValues { group, values: rows.iter().map(|row| row.shown.value(&row.point)).collect() }
 }
 
 #[cfg(test)]

@@ -64,7 +64,8 @@ async fn adds_a_variable(user: &mut Browser) {
     user.see("must not be empty", PATIENCE).await;
     user.fill("Address", "a..b").await;
     user.click_part("store-variable").await;
-    user.find("the finding at the address", "//*[@id='variable-address-said'][@role='alert']", PATIENCE).await;
+    user.find("the finding at the address", "//*[@id='variable-address-said'][@role='alert']", PATIENCE)
+        .await;
     user.shot("variable-wrong").await;
     user.fill("Address", "grHWCs_PV").await;
     user.fill("Unit", "°C").await;

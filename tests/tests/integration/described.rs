@@ -30,7 +30,13 @@ const LEFT_OUT: [&str; 4] = ["post_discover", "get_ws", "get_live", "delete_sess
 
 #[tokio::test]
 async fn a_viewer_gets_what_is_described() {
-    promises_hold_for("viewer", &["GET /api/v1/blocks/{id} 200", "POST /api/v1/blocks/{id}/run 403"]).await;
+    let seen = [
+        "GET /api/v1/blocks/{id} 200",
+        "POST /api/v1/blocks/{id}/run 403",
+        "GET /api/v1/groups/{id}/values 200",
+        "POST /api/v1/variables/{id}/offer 403",
+    ];
+    promises_hold_for("viewer", &seen).await;
 }
 
 #[tokio::test]
@@ -48,6 +54,14 @@ async fn an_engineer_gets_what_is_described() {
         "POST /api/v1/blocks/{id}/run 200",
         "POST /api/v1/blocks/{id}/run 404",
         "GET /api/v1/blocks/{id}/exchange.pcapng 200",
+        "POST /api/v1/devices 201",
+        "POST /api/v1/devices 422",
+        "PUT /api/v1/devices/{id} 400",
+        "POST /api/v1/devices/{id}/copy 201",
+        "GET /api/v1/devices/{id}/browse 200",
+        "POST /api/v1/groups/{id}/variables 201",
+        "GET /api/v1/groups/{id}/variables.csv 200",
+        "POST /api/v1/variables/{id}/offer 404",
         "GET /api/v1/audit 200",
         "GET /api/v1/history/trend 200",
         "POST /api/v1/users 403",
@@ -79,6 +93,7 @@ async fn promises_hold_for(role: &str, seen: &[&str]) {
     for _ in 0..4 {
         engineer.create(&block::product_name("0,0")).await;
     }
+    plants(&engineer).await;
     let (caller, headers) = caller(&relay, role).await;
     let document = asked_for_what_is_there(caller.get("openapi.json").await.body);
     let file = relay.folder().join("openapi.json");
@@ -92,6 +107,19 @@ async fn promises_hold_for(role: &str, seen: &[&str]) {
         let [method, route, status] = words[..] else { panic!("{answer}") };
         let line = format!("{{method=\"{method}\",route=\"{route}\",status=\"{status}\"}}");
         assert!(counted.contains(&line), "{role}: {answer} never came; what came:\n{counted}");
+    }
+}
+
+/// Two devices, of which one may be deleted, each with a group and a variable. They are the relay's own: nobody is asked.
+async fn plants(engineer: &Rest) {
+    for name in ["stays", "goes"] {
+        let device =
+            engineer.post("devices", &json!({ "name": name, "path": "0,0", "profile": "omron" })).await;
+        let group = json!({ "device": device.body["id"], "name": name });
+        let group = engineer.post("groups", &group).await;
+        let path = format!("groups/{}/variables", group.body["id"].as_str().expect("an id"));
+        let variables = json!({ "variables": [{ "name": name, "address": "TAG1", "writable": true }] });
+        assert_eq!(engineer.post(&path, &variables).await.status, 201);
     }
 }
 

@@ -395,6 +395,45 @@ async fn who_may_not_write_gets_no_ticket() {
 }
 
 #[tokio::test]
+async fn whoever_looks_at_values_with_an_ended_session_sees_no_more() {
+    use cipdeck_tests::managed::Managed;
+
+    let relay = Managed::start().await;
+    let viewer = relay.user("viewer").await;
+    let cookie = [("cookie", viewer.header("cookie"))];
+    let mut looking = LiveViewer::connect_with(&relay.address, &cookie).await;
+    let disabled = Rest::send(
+        relay
+            .admin
+            .request(reqwest::Method::PATCH, "users/viewer")
+            .header("content-type", "application/json")
+            .body(json!({ "disabled": true }).to_string()),
+    )
+    .await;
+    assert_eq!(disabled.status, 200, "{disabled:?}");
+    let frame = looking.closed(PATIENCE).await.expect("a reason");
+    assert_eq!(u16::from(frame.code), 4401, "{frame:?}");
+}
+
+#[tokio::test]
+async fn a_group_that_is_on_goes_on_after_a_restart_of_the_relay() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "micro800"]).await;
+    let relay = Relay::start().await;
+    let (_, group) = device(&relay.rest, &plc.address, "auto", 100).await;
+    let ids = variables(&relay.rest, &group, &["Counter"]).await;
+    turn(&relay.rest, &group, true).await;
+    let relay = Relay::start_in(relay.stop().await).await;
+    let mut viewer = LiveViewer::connect(relay.address).await;
+    viewer.watch(&[&group]).await;
+    viewer
+        .until("it is read", PATIENCE, |viewer| {
+            viewer.values.get(&ids[0]).filter(|value| value["quality"] == "good").map(|_| ())
+        })
+        .await;
+    relay.stop().await;
+}
+
+#[tokio::test]
 async fn a_message_that_is_none_is_answered_and_the_viewer_stays() {
     let relay = Relay::start().await;
     let mut viewer = LiveViewer::connect(relay.address).await;

@@ -78,7 +78,9 @@ async fn listed(relay: &Managed) -> Vec<Value> {
 
 async fn listed_by(admin: &Rest) -> Vec<Value> {
     let mut all = Vec::new();
-    for path in ["blocks", "tokens", "view-links", "allow/targets", "allow/writes", "window", "read-only"] {
+    for path in
+        ["blocks", "devices", "tokens", "view-links", "allow/targets", "allow/writes", "window", "read-only"]
+    {
         all.push(admin.get(path).await.body);
     }
     let users = admin.get("users").await.body;

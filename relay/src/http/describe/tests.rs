@@ -59,6 +59,8 @@ fn every_message_of_the_web_socket_is_in_the_document() {
     for (name, kinds) in [
         ("ClientMessage", &["run", "cancel", "in"][..]),
         ("ServerMessage", &["hello", "snapshot", "changes", "access", "answer"]),
+        ("LiveClientMessage", &["watch"]),
+        ("LiveServerMessage", &["hello", "access", "tree", "variables", "status", "values", "problem"]),
     ] {
         let told = document["components"]["schemas"][name]["oneOf"].as_array().unwrap();
         assert_eq!(told.len(), kinds.len(), "{told:?}");
