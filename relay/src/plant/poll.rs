@@ -338,7 +338,7 @@ impl Task {
             return;
         }
         if let Some(poller) = &self.poller {
-            self.status.load = load(poller.load(), self.status.load.items);
+            self.status.load = load(poller.load(), self.status.load.items, self.work.as_deref());
         }
         if self.told.as_ref() != Some(&self.status) {
             self.shared.hub.put_status(self.status.clone());
@@ -398,7 +398,10 @@ pub(super) fn point(reading: &Reading, clock: Clock) -> Point {
     }
 }
 
-fn load(load: poll::Load, items: u32) -> DeviceLoad {
+fn load(load: poll::Load, items: u32, work: Option<&Work>) -> DeviceLoad {
+    let periods =
+        work.iter().flat_map(|work| &work.groups).filter(|group| group.on).map(|group| group.period);
+    let shortest = periods.min().map_or(u64::MAX, |period| period.0.saturating_mul(1_000));
     DeviceLoad {
         requests: load.requests,
         requests_per_s: load.last_second,
@@ -408,6 +411,7 @@ fn load(load: poll::Load, items: u32) -> DeviceLoad {
         skipped_periods: load.skipped_periods,
         items,
         bad_items: load.bad_items,
-        is_limited: load.is_limited,
+        // Requests that are only spread over the period keep nothing waiting.
+        is_limited: load.is_limited && load.cycle_us >= shortest,
     }
 }

@@ -22,7 +22,25 @@ pub fn refusal(status: GeneralStatus, extended: Option<u16>) -> String {
             }
         }
     }
+    if extended.is_none()
+        && let Some(hint) = hint(status)
+    {
+        let _ = write!(text, ": {hint}");
+    }
     text
+}
+
+/// What a plain status means where a tag was asked for.
+const fn hint(status: GeneralStatus) -> Option<&'static str> {
+    match status {
+        GeneralStatus::PathSegmentError => {
+            Some("the device has no tag of this name, or does not show it to others")
+        }
+        GeneralStatus::PathDestinationUnknown => {
+            Some("there is no such tag or element; is an index outside of the array?")
+        }
+        _ => None,
+    }
 }
 
 /// Whether a refusal is about this one tag: asking for it again soon changes nothing, and others are not concerned.
