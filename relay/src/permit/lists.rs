@@ -8,6 +8,7 @@ use cipdeck_shared::api::{AllowedTarget, AllowedWrite, NewAllowedTarget, NewAllo
 use cipdeck_shared::config::{Endpoint, Host, Target};
 use cipdeck_shared::plan::Effect;
 use cipdeck_shared::table::{self, Access};
+use cipdeck_shared::wire::ClassCode;
 
 use super::question::{Denied, Sending, place};
 use super::target_rule::{RuleError, TargetRule};
@@ -264,8 +265,12 @@ fn is_of_this_machine(ip: IpAddr) -> bool {
 }
 
 fn words(effect: &Effect) -> String {
-    let class = effect.class.unwrap_or_default();
+    // Names are those of tags.
+    let class = effect.class.unwrap_or(ClassCode::Symbol.0);
     let service = table::service(class, effect.service).map_or("an unknown service", |row| row.name);
+    if effect.class.is_none() {
+        return format!("service {} {service}, of a tag: the list names objects only", effect.service.0);
+    }
     let number = |value: Option<u32>| value.map_or_else(|| "?".to_owned(), |value| value.to_string());
     format!(
         "service {} {service}, class {}, instance {}, attribute {}",

@@ -382,12 +382,16 @@ async fn who_may_not_write_gets_no_ticket() {
     let ticket = engineer.post(&format!("{path}/offer"), &json!({ "text": "51" })).await;
     assert_eq!(ticket.status, 200, "{ticket:?}");
     let others = [relay.user("viewer").await, relay.user("operator").await, relay.admin.clone()];
+    let mut said = Vec::new();
     for other in &others {
-        other.post(&format!("{path}/offer"), &json!({ "text": "52" })).await.is_problem(403, "not_permitted");
+        let refused = other.post(&format!("{path}/offer"), &json!({ "text": "52" })).await;
+        refused.is_problem(403, "not_permitted");
+        said.push(refused.body["detail"].as_str().expect("why").to_owned());
         let stolen = json!({ "ticket": ticket.body["ticket"] });
         other.post(&format!("{path}/write"), &stolen).await.is_problem(403, "not_permitted");
         other.put(&path, &all[0]).await.is_problem(403, "not_permitted");
     }
+    assert!(said[1].contains("of a tag: the list names objects only"), "an operator: {said:?}");
     // It is still there for whom it was made.
     let mine = json!({ "ticket": ticket.body["ticket"] });
     let written = engineer.post(&format!("{path}/write"), &mine).await;

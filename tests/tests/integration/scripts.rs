@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 /// Done, or refused by the relay with these words.
 const DONE: Result<(), &str> = Ok(());
-const NO_EDIT: Result<(), &str> = Err("blocks are changed by engineers");
+const NO_EDIT: Result<(), &str> = Err("blocks and devices are changed by engineers");
 const NO_WINDOW: Result<(), &str> = Err("write window");
 const NOT_LISTED: Result<(), &str> = Err("list");
 
