@@ -6,9 +6,12 @@ use std::fmt::Write as _;
 use cipdeck_tests::PATIENCE;
 use cipdeck_tests::browser::{Browser, Journey, part};
 use cipdeck_tests::command::Service;
+use cipdeck_tests::measure::measured;
 use cipdeck_tests::relay::Relay;
 use cipdeck_tests::rest::Rest;
 use serde_json::{Value, json};
+
+use crate::monitor::{BUDGET_MS, spent_in_a_hundred_frames};
 
 const OMRON: [&str; 2] = ["--profile", "omron"];
 
@@ -27,6 +30,7 @@ async fn a_device_a_group_and_variables_are_made_read_and_changed() {
     reads(&mut user).await;
     looks(&mut user).await;
     changes_a_value(&mut user).await;
+    copies_the_device(&mut user).await;
     // Findings are answers with another status, which the browser logs.
     user.close_with_expected_errors().await;
 }
@@ -42,14 +46,24 @@ async fn makes_the_device(user: &mut Browser, address: &str) {
     user.click_part("store-device").await;
     user.find("the finding at the path", "//*[@id='device-path-said'][@role='alert']", PATIENCE).await;
     user.shot("device-wrong").await;
-    user.fill("Path", &format!("4,{address}")).await;
+    user.fill("Addresses", address).await;
+    user.click_part("find-do").await;
+    user.see("cipdeck demo NX", PATIENCE).await;
+    user.click("Take over").await;
+    user.until("the path is filled in", PATIENCE, async |driver| {
+        let path = driver.find(thirtyfour::By::Id("device-path")).await.ok()?.prop("value").await.ok()??;
+        (path == format!("4,{address}")).then_some(())
+    })
+    .await;
+    user.fill("Name", "NX line 4").await;
+    user.fill("Site", "Hall 3").await;
     user.shot("device").await;
     user.click_part("store-device").await;
     user.see("This device has none yet", PATIENCE).await;
 }
 
 async fn makes_the_group(user: &mut Browser) {
-    user.fill("Name of a new group", "Process").await;
+    user.fill("New group", "Process").await;
     user.fill("Reads every, ms", "5").await;
     user.see("a number from 10 to 3600000 is needed", PATIENCE).await;
     user.fill("Reads every, ms", "200").await;
@@ -157,6 +171,44 @@ async fn changes_a_value(user: &mut Browser) {
     let entry = user.find("the entry in the list", &part("write-line"), PATIENCE).await;
     assert!(entry.contains("stSet.speed") && entry.contains("1450.5"), "{entry}");
     user.shot("writes").await;
+}
+
+/// With its groups and variables, which are not read before somebody says so.
+async fn copies_the_device(user: &mut Browser) {
+    user.click_part("copy-device").await;
+    user.fill_at("//input[@id='copy-path']", "Path", "4,127.0.0.1:1").await;
+    user.shot("copy").await;
+    user.click_part("copy-do").await;
+    user.see("NX line 4 copy", PATIENCE).await;
+    user.click_at("//tr[@data-test='group-line']//a", "the copied group").await;
+    user.see("5 variables. The group is off", PATIENCE).await;
+    user.shot("copied").await;
+}
+
+#[tokio::test]
+async fn five_thousand_variables_stay_within_the_budget_of_a_frame() {
+    let plc = Service::simulate("127.0.0.1:0", &OMRON).await;
+    let relay = Relay::start().await;
+    let group = made_by_rest(&relay.rest, &plc.address, true).await;
+    let variable = |number: usize| json!({ "name": format!("temperature {number:04}"), "address": format!("arTemp[{}]", number % 10) });
+    let new = json!({ "variables": (0..5000).map(variable).collect::<Vec<_>>() });
+    let reply = relay.rest.post(&format!("groups/{group}/variables"), &new).await;
+    assert_eq!(reply.status, 201, "{reply:?}");
+    let journey = Journey::start("devices_5000").await;
+    let mut user = journey.open("user", &format!("{}devices/{group}", relay.page())).await;
+    user.see("5000 variables: 5000 good", PATIENCE).await;
+    user.chromium("Performance.enable", json!({})).await;
+    let (spent, all) = spent_in_a_hundred_frames(&user).await;
+    user.shot("live").await;
+    let rows = user.script("return document.querySelectorAll('[data-test=variable]').length").await;
+    measured(format!(
+        "Devices, 5,000 variables that all change five times a second: script per frame, as Chromium counts: {:.2} ms \
+         ({all} frames); {rows} rows are in the document",
+        spent / all
+    ));
+    assert!(rows.as_u64().is_some_and(|rows| rows < 100), "windowed: {rows}");
+    assert!(spent / all < BUDGET_MS, "{} ms of script per frame", spent / all);
+    user.close().await;
 }
 
 #[tokio::test]

@@ -13,7 +13,7 @@ const BLOCKS: u64 = 1000;
 /// Cyclic, once a second each.
 const CHANGING: u64 = 100;
 /// The budget of the page, for the mean: single frames may wait for a processor that others use.
-const BUDGET_MS: f64 = 8.0;
+pub(crate) const BUDGET_MS: f64 = 8.0;
 
 #[tokio::test]
 async fn a_thousand_blocks_of_which_a_hundred_change_every_second() {
@@ -64,7 +64,7 @@ async fn a_thousand_blocks_of_which_a_hundred_change_every_second() {
 }
 
 /// Milliseconds of script while the page drew so many frames.
-async fn spent_in_a_hundred_frames(user: &Browser) -> (f64, f64) {
+pub(crate) async fn spent_in_a_hundred_frames(user: &Browser) -> (f64, f64) {
     let (before, frames_before) = (script_ms(user).await, frames(user).await);
     user.until("100 frames", PATIENCE, async |_| (frames(user).await >= frames_before + 100.0).then_some(()))
         .await;

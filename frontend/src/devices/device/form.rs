@@ -28,17 +28,38 @@ pub(super) struct DeviceFormProps {
 pub(super) fn DeviceForm(props: &DeviceFormProps) -> Html {
     let action = use_action();
     let draft = use_state(|| props.draft.clone());
+    // What the form began with: a change names the revision that was seen.
+    let seen = use_state(|| (props.stored.clone(), props.draft.clone()));
     let tried = use_state(|| false);
+    let is_changed = *draft != seen.1;
+    use_effect_with((props.stored.clone(), props.draft.clone()), {
+        let (draft, seen) = (draft.clone(), seen.clone());
+        move |newer| {
+            // What somebody is typing stays.
+            if !is_changed && *seen != *newer {
+                draft.set(newer.1.clone());
+                seen.set(newer.clone());
+            }
+        }
+    });
     let read = draft.read();
     let wrong = read.as_ref().err().filter(|_| *tried).cloned().unwrap_or_default();
     let onsubmit = {
-        let (action, tried, stored) = (action.clone(), tried.clone(), props.stored.clone());
+        let (action, tried, stored) = (action.clone(), tried.clone(), seen.0.clone());
+        let (draft, seen) = (draft.clone(), seen.clone());
         move |event: SubmitEvent| {
             event.prevent_default();
             tried.set(true);
             match (&read, &stored) {
                 (Ok(config), Some(old)) => {
-                    action.go(api::change_device(Device { config: config.clone(), ..old.clone() }), |_| {});
+                    action.go(api::change_device(Device { config: config.clone(), ..old.clone() }), {
+                        let (draft, seen) = (draft.clone(), seen.clone());
+                        move |device| {
+                            let stored = DeviceDraft::of(&device.config);
+                            draft.set(stored.clone());
+                            seen.set((Some(device), stored));
+                        }
+                    });
                 }
                 (Ok(config), None) => {
                     action.go(api::add_device(config.clone()), |device| route::go(Page::Device(device.id)));
@@ -47,13 +68,13 @@ pub(super) fn DeviceForm(props: &DeviceFormProps) -> Html {
             }
         }
     };
-    let is_changed = *draft != props.draft || props.stored.is_none();
-    let words = if props.stored.is_some() { tr!("form.store") } else { tr!("device.add") };
+    let is_new = props.stored.is_none();
+    let words = if is_new { tr!("device.add") } else { tr!("form.store") };
     html! {
         <form class="grid-form" {onsubmit} data-test="device-form">
             { fields(&draft, &wrong, &Findings::of(action.problem())) }
             { problem_note(action.problem().as_ref()) }
-            <button type="submit" class="button primary" disabled={action.is_busy() || !is_changed} data-test="store-device">{ words }</button>
+            <button type="submit" class="button primary" disabled={action.is_busy() || !(is_changed || is_new)} data-test="store-device">{ words }</button>
         </form>
     }
 }

@@ -75,7 +75,7 @@ pub(super) fn DevicePage(props: &DevicePageProps) -> Html {
         <section class="panel">
             <h2>{ tr!("device.settings") }</h2>
             if may {
-                <DeviceForm key={device.revision.to_string()} stored={Some(device.clone())} draft={DeviceDraft::of(&device.config)} />
+                <DeviceForm stored={Some(device.clone())} draft={DeviceDraft::of(&device.config)} />
             } else {
                 { note(tr!("device.not_you")) }
             }

@@ -270,6 +270,10 @@ impl Plant {
                 self.show(Link::Foreign { protocol });
             }
             LiveServerMessage::Hello { .. } => {
+                if self.0.machine.borrow().was_online() {
+                    // Nobody has told what has changed in between.
+                    self.0.watched.borrow_mut().iter_mut().for_each(|(_, edition)| *edition += 1);
+                }
                 self.input(Input::Hello);
                 self.tell_watched();
                 self.show(Link::Online { latency_ms: None });
