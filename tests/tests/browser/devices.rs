@@ -186,6 +186,38 @@ async fn copies_the_device(user: &mut Browser) {
 }
 
 #[tokio::test]
+async fn what_a_device_has_is_listed_searched_and_added() {
+    let plc = Service::simulate("127.0.0.1:0", &OMRON).await;
+    let relay = Relay::start().await;
+    let group = made_by_rest(&relay.rest, &plc.address, true).await;
+    let journey = Journey::start("devices_browse").await;
+    let mut user = journey.open("user", &format!("{}devices/{group}", relay.page())).await;
+    user.click_part("browse").await;
+    user.until("all names are there", PATIENCE, async |driver| {
+        let progress =
+            driver.find(thirtyfour::By::XPath(part("browse-progress"))).await.ok()?.text().await.ok()?;
+        progress.contains("names, in").then_some(())
+    })
+    .await;
+    user.shot("listed").await;
+    user.fill("Search names and types", "stmotor").await;
+    let line = "//tr[@data-test='symbol'][@data-name='stMotor']";
+    user.click_at(&format!("{line}//button"), "members").await;
+    let member = "//tr[@data-test='symbol'][@data-name='stMotor.speed']//input";
+    user.click_at(member, "stMotor.speed").await;
+    user.shot("members").await;
+    user.fill("Search names and types", "TAG").await;
+    user.click_at("//tr[@data-test='symbol'][@data-name='TAG1']//input", "TAG1").await;
+    user.see("2 ticked", PATIENCE).await;
+    user.click_part("browse-add").await;
+    // The member brings along its structure.
+    user.see("3 variables: 3 good", PATIENCE).await;
+    user.find("the member", &row("speed"), PATIENCE).await;
+    user.shot("added").await;
+    user.close().await;
+}
+
+#[tokio::test]
 async fn five_thousand_variables_stay_within_the_budget_of_a_frame() {
     let plc = Service::simulate("127.0.0.1:0", &OMRON).await;
     let relay = Relay::start().await;

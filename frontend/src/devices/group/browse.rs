@@ -124,6 +124,6 @@ fn progress(listing: &Listing) -> Html {
         if let Some(reason) = &listing.reason {
             <p class="warning-text" data-test="browse-reason">{ reason }</p>
         }
-        { problem_note(listing.problem.as_ref()) }
+        { problem_note(listing.problem.as_ref().or(listing.unknown.as_ref())) }
     </> }
 }

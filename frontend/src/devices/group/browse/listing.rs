@@ -25,6 +25,8 @@ pub(super) struct Listing {
     pub(super) open: Rc<Shelf<String, ()>>,
     /// Why the relay does not say more.
     pub(super) problem: Option<Rc<Problem>>,
+    /// Why the members that somebody wanted to see are not there.
+    pub(super) unknown: Option<Rc<Problem>>,
     pub(super) cancel: Callback<()>,
     pub(super) again: Callback<()>,
     /// Shows or hides the members of an address with this structure.
@@ -49,6 +51,8 @@ pub(super) fn use_listing(device: DeviceId) -> Listing {
     let state = use_state(State::default);
     let types = use_state(Rc::<Shelf<String, Rc<BrowsedType>>>::default);
     let open = use_state(Rc::<Shelf<String, ()>>::default);
+    // Why the members of a structure are not known.
+    let unknown = use_state(|| None::<Rc<Problem>>);
     let (asked, next) = (use_state(|| 0_u32), use_state(|| None::<usize>));
     use_effect_with((device, *asked), {
         let (state, next) = (state.clone(), next.clone());
@@ -116,7 +120,7 @@ pub(super) fn use_listing(device: DeviceId) -> Listing {
         move |()| asked.set(*asked + 1)
     });
     let members = {
-        let (types, open) = (types.clone(), open.clone());
+        let (types, open, unknown) = (types.clone(), open.clone(), unknown.clone());
         Callback::from(move |(address, structure): (String, String)| {
             let mut changed = (**open).clone();
             if changed.remove(&address).is_none() {
@@ -126,15 +130,17 @@ pub(super) fn use_listing(device: DeviceId) -> Listing {
             if types.get(&structure).is_some() {
                 return;
             }
-            let types = types.clone();
+            let (types, unknown) = (types.clone(), unknown.clone());
             spawn_local(async move {
                 let of = query(&[("of", &structure)]);
-                // Without an answer there are no members to show.
-                if let Ok(found) = api::get::<BrowsedType>(format!("devices/{device}/browse/type{of}")).await
-                {
-                    let mut more = (**types).clone();
-                    more.insert(structure, Rc::new(found));
-                    types.set(Rc::new(more));
+                match api::get::<BrowsedType>(format!("devices/{device}/browse/type{of}")).await {
+                    Ok(found) => {
+                        let mut more = (**types).clone();
+                        more.insert(structure, Rc::new(found));
+                        types.set(Rc::new(more));
+                        unknown.set(None);
+                    }
+                    Err(problem) => unknown.set(Some(Rc::new(problem))),
                 }
             });
         })
@@ -149,6 +155,7 @@ pub(super) fn use_listing(device: DeviceId) -> Listing {
         types: (*types).clone(),
         open: (*open).clone(),
         problem: state.problem.clone(),
+        unknown: (*unknown).clone(),
         cancel,
         again,
         members,
