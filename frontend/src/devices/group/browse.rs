@@ -122,7 +122,7 @@ fn progress(listing: &Listing) -> Html {
             }
         </p>
         if let Some(reason) = &listing.reason {
-            <p class="warning-text" data-test="browse-reason">{ reason }</p>
+            <p class={if listing.step == BrowseStep::Failed { "warning-text" } else { "hint" }} data-test="browse-reason">{ reason }</p>
         }
         { problem_note(listing.problem.as_ref().or(listing.unknown.as_ref())) }
     </> }

@@ -84,11 +84,11 @@ struct SummaryProps {
     on: bool,
 }
 
-/// `51 variables: 49 good, 1 stale, 1 bad`: counted anew twice a second, and not read out each time.
+/// `51 variables: 49 good, 1 stale, 1 bad`: counted anew every second, and not read out each time.
 #[component]
 fn Summary(props: &SummaryProps) -> Html {
     let plant = use_plant();
-    use_frames(500, !props.on);
+    use_frames(1_000, !props.on);
     let count = props.lines.ids.len();
     let mut of = [0_usize; 4];
     for line in props.lines.iter() {

@@ -13,7 +13,10 @@ use cipdeck_shared::{
 use gloo_timers::callback::Timeout;
 use yew::{Callback, platform::spawn_local};
 
-use super::values::ValueStore;
+use super::{
+    newest::{Newest, Values},
+    values::ValueStore,
+};
 use crate::{
     browser,
     net::{Action, Input, Link, Reconnect, Socket, Writing, session},
@@ -257,8 +260,10 @@ impl Plant {
 
     fn hear(&self, text: &str) {
         let start = browser::now_ms();
-        // A message of a newer relay that we do not know is none of our business.
-        if let Ok(message) = serde_json::from_str(text) {
+        if let Some(Values { group, values }) = Values::read(text) {
+            self.0.values.put(group, values, start);
+        } else if let Ok(message) = serde_json::from_str(text) {
+            // A message of a newer relay that we do not know is none of our business.
             self.take(message, start);
         }
         self.0.spent.emit(browser::now_ms() - start);
@@ -278,7 +283,9 @@ impl Plant {
                 self.tell_watched();
                 self.show(Link::Online { latency_ms: None });
             }
-            LiveServerMessage::Values { group, values } => self.0.values.put(group, values, now_ms),
+            LiveServerMessage::Values { group, values } => {
+                self.0.values.put(group, values.into_iter().map(Newest::from).collect(), now_ms);
+            }
             LiveServerMessage::Tree(tree) => {
                 self.0.tree.replace(Some(Rc::new(Tree::sorted(tree.devices, tree.groups))));
                 self.0.watchers.wake();

@@ -6,11 +6,12 @@
 use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
-    api::VariableValue,
+    api::Quality,
     config::{GroupId, VariableId},
 };
 use yew::Callback;
 
+use super::newest::Newest;
 use crate::{
     devices::trend::Series,
     store::{AskForFrame, Shelf, Watch, Watchers},
@@ -20,7 +21,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// As the relay said it.
-    pub value: VariableValue,
+    pub value: Newest,
     /// When, in ms of [`crate::browser::now_ms`].
     pub heard_ms: f64,
     /// The smallest and the biggest number since the page watches.
@@ -69,7 +70,7 @@ impl ValueStore {
     }
 
     /// Newer values.
-    pub fn put(&self, group: GroupId, values: Vec<VariableValue>, now_ms: f64) {
+    pub fn put(&self, group: GroupId, values: Vec<Newest>, now_ms: f64) {
         let mut state = self.0.state.borrow_mut();
         for value in values {
             state.put(group, value, now_ms);
@@ -147,7 +148,7 @@ impl ValueStore {
 }
 
 impl State {
-    fn put(&mut self, group: GroupId, value: VariableValue, now_ms: f64) {
+    fn put(&mut self, group: GroupId, value: Newest, now_ms: f64) {
         let id = value.variable;
         let number = value.number.filter(|number| number.is_finite());
         if let Some(series) = self.series.get_mut(&id) {
@@ -164,8 +165,8 @@ impl State {
 }
 
 /// Whether a value is one of now.
-fn is_fresh(value: &VariableValue) -> bool {
-    value.quality == cipdeck_shared::api::Quality::Good
+fn is_fresh(value: &Newest) -> bool {
+    value.quality == Quality::Good
 }
 
 impl PartialEq for ValueStore {

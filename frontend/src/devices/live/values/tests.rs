@@ -20,16 +20,14 @@ fn store() -> (ValueStore, impl Fn()) {
     (store, frame)
 }
 
-fn value(id: u32, number: f64) -> VariableValue {
-    VariableValue {
+fn value(id: u32, number: f64) -> Newest {
+    Newest {
         variable: VariableId(id),
         quality: Quality::Good,
         reason: None,
         text: number.to_string(),
         number: Some(number),
-        value: None,
         kind: "REAL".to_owned(),
-        at: None,
         age_ms: None,
     }
 }
