@@ -38,7 +38,7 @@ async fn a_thousand_blocks_of_which_a_hundred_change_every_second() {
     }
     user.see("done", PATIENCE).await;
     user.chromium("Performance.enable", json!({})).await;
-    let (spent, all) = spent_in_a_hundred_frames(&user).await;
+    let (spent, all) = spent_in_frames(&user, 100.0).await;
     let stats = stats(&user).await;
     user.shot("live").await;
 
@@ -53,7 +53,7 @@ async fn a_thousand_blocks_of_which_a_hundred_change_every_second() {
 
     user.click("Connections").await;
     user.see("Channel monitor", PATIENCE).await;
-    let (spent, all) = spent_in_a_hundred_frames(&user).await;
+    let (spent, all) = spent_in_frames(&user, 100.0).await;
     user.shot("connections").await;
     measured(format!(
         "Connections: script per frame, as Chromium counts: {:.2} ms ({all} frames)",
@@ -64,10 +64,12 @@ async fn a_thousand_blocks_of_which_a_hundred_change_every_second() {
 }
 
 /// Milliseconds of script while the page drew so many frames.
-pub(crate) async fn spent_in_a_hundred_frames(user: &Browser) -> (f64, f64) {
+pub(crate) async fn spent_in_frames(user: &Browser, count: f64) -> (f64, f64) {
     let (before, frames_before) = (script_ms(user).await, frames(user).await);
-    user.until("100 frames", PATIENCE, async |_| (frames(user).await >= frames_before + 100.0).then_some(()))
-        .await;
+    user.until("some frames", PATIENCE, async |_| {
+        (frames(user).await >= frames_before + count).then_some(())
+    })
+    .await;
     (script_ms(user).await - before, frames(user).await - frames_before)
 }
 
