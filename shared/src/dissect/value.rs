@@ -64,7 +64,7 @@ pub fn decode_as(layout: &DataFields, reply: &[u8]) -> Vec<Decoded> {
 pub fn fields(layout: &DataFields, data: &[u8]) -> Vec<Decoded> {
     let mut end = 0;
     let each = layout.each().iter().map_while(|field| {
-        let value = field.value(data)?;
+        let text = field.text(data)?;
         end = field.to(data);
         let type_name = Cow::Owned(field.type_name());
         Some(Decoded {
@@ -72,7 +72,7 @@ pub fn fields(layout: &DataFields, data: &[u8]) -> Vec<Decoded> {
             to: end,
             type_name,
             name: Cow::Owned(field.name.clone()),
-            text: value.to_string(),
+            text,
             guess: false,
         })
     });

@@ -8,7 +8,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::dialect::Dialect;
-use super::elementary::Elementary;
+use super::elementary::{Elementary, Form};
 use super::kind::{Dimensions, Type};
 use super::read_type::{TypeError, Types};
 use super::value::{Value, ValueError};
@@ -93,6 +93,17 @@ impl DataField {
                 Some(Value::Text(text.get(..usize::from(*length))?.to_vec()))
             }
         }
+    }
+
+    /// [`Self::value`] as people write it: bits as hexadecimal.
+    pub fn text(&self, data: &[u8]) -> Option<String> {
+        let value = self.value(data)?;
+        Some(match (self.kind, &value) {
+            (FieldKind::Number(kind), Value::Unsigned(bits)) if kind.form() == Form::Bits => {
+                alloc::format!("0x{bits:0width$X}", width = 2 * kind.size(Dialect::Micro800))
+            }
+            _ => value.to_string(),
+        })
     }
 
     /// The byte after its last one in the data.
@@ -228,6 +239,8 @@ mod tests {
             ["speed REAL 50.5", "run BOOL TRUE", "hist[0] INT -2", "hist[1] INT 16", "name STRING[4] \"AB\""];
         assert_eq!(shown, words);
         assert_eq!(fields.size(), Some(13));
+        let bits = DataFields::read("WORD").unwrap();
+        assert_eq!(bits.each()[0].text(&[0x80, 1]).as_deref(), Some("0x0180"));
         fields.each()[1].write(&mut data, "0").unwrap();
         assert_eq!(data, hex!("00 00 4A 42 00 FE FF 10 00 41 42 00 00"));
     }

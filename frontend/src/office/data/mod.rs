@@ -91,7 +91,7 @@ fn Fields(props: &FieldsProps) -> Html {
     let may = session::may(Role::may_edit);
     let on_data = req_data.setter();
     html! {
-        <form {onsubmit} data-test="data-form">
+        <form class="data-form" {onsubmit} data-test="data-form">
             <section class="panel">
                 <h2>{ "ReqData" }</h2>
                 { layout_entry("req-layout", "ReqLayout".into(), &req_layout) }

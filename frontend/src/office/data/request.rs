@@ -26,7 +26,7 @@ pub(super) fn RequestFields(props: &RequestFieldsProps) -> Html {
     let Ok(data) = read_hex(&props.data) else { return note(tr!("data.unreadable")) };
     let row = |(place, field): (usize, &DataField)| {
         let typed = typing.as_ref().filter(|(at, _)| *at == place).map(|(_, text)| text.clone());
-        let held = || field.value(&data).map_or_else(String::new, |value| value.to_string());
+        let held = || field.text(&data).unwrap_or_default();
         let text = typed.unwrap_or_else(held);
         let refused = if text.is_empty() { None } else { field.write(&mut data.clone(), &text).err() };
         let oninput = {
