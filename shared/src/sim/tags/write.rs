@@ -1,9 +1,9 @@
 //! Write Tag (0x4D), Write Tag Fragmented (0x53) and Read Modify Write Tag (0x4E).
 
-use crate::tag::{Dialect, Elementary, TagHead, Type};
+use crate::tag::{Dialect, Elementary, TagHead, Type, Value};
 use crate::wire::{Reader, SimpleDataSegment};
 
-use super::address::Part;
+use super::address::{Part, Step};
 use super::memory::{Tag, TagAccess, set_bit};
 use super::read::{in_range, region};
 use super::refusal::Wrong;
@@ -42,12 +42,12 @@ impl Head {
 
 impl Tag {
     /// `type | [handle] | UINT elements | values`.
-    pub(super) fn write(&mut self, dialect: Dialect, address: &Place<'_>, data: &[u8]) -> Result<(), Wrong> {
+    pub(super) fn write(&mut self, dialect: Dialect, to: &Place<'_>, data: &[u8]) -> Result<(), Wrong> {
         let mut reader = Reader::new(data);
         let head = Head::read(&mut reader)?;
         let kind = self.kind.clone();
-        let part = Part::find(&kind, dialect, address.steps)?;
-        if let Some(bytes) = address.bytes {
+        let part = Part::find(&kind, dialect, to.steps)?;
+        if let Some(bytes) = to.bytes {
             return self.write_region(dialect, part, &head, bytes, reader.rest());
         }
         let part = part.elements(dialect);
@@ -83,14 +83,14 @@ impl Tag {
     pub(super) fn write_fragment(
         &mut self,
         dialect: Dialect,
-        address: &Place<'_>,
+        to: &Place<'_>,
         data: &[u8],
     ) -> Result<(), Wrong> {
         let mut reader = Reader::new(data);
         let head = Head::read(&mut reader)?;
         let offset = reader.u32().map_err(|_| Wrong::Short)?;
         let kind = self.kind.clone();
-        let part = Part::find(&kind, dialect, address.steps)?.elements(dialect);
+        let part = Part::find(&kind, dialect, to.steps)?.elements(dialect);
         let count = head.check(dialect, &part)?;
         if part.bit.is_some() {
             return Err(Wrong::Kind);
@@ -108,11 +108,11 @@ impl Tag {
     }
 
     /// `UINT size | OR mask | AND mask`. Logix.
-    pub(super) fn modify(&mut self, dialect: Dialect, address: &Place<'_>, data: &[u8]) -> Result<(), Wrong> {
+    pub(super) fn modify(&mut self, dialect: Dialect, to: &Place<'_>, data: &[u8]) -> Result<(), Wrong> {
         let mut reader = Reader::new(data);
         let size = usize::from(reader.u16().map_err(|_| Wrong::Short)?);
         let kind = self.kind.clone();
-        let part = Part::find(&kind, dialect, address.steps)?.elements(dialect);
+        let part = Part::find(&kind, dialect, to.steps)?.elements(dialect);
         let whole_number = matches!(part.kind, Type::Elementary(kind) if kind.bits().is_some());
         if !whole_number || part.bit.is_some() || size != part.stride {
             return Err(Wrong::Kind);
@@ -185,9 +185,9 @@ impl Tag {
     /// Omron: a subrange, and the values of an enumeration.
     fn allowed(&self, dialect: Dialect, part: &Part<'_>, values: &[u8]) -> Result<(), Wrong> {
         let Some((least, most)) = self.range else { return Ok(()) };
-        let least_most = |value: &crate::tag::Value| match value {
-            crate::tag::Value::Signed(value) => (least..=most).contains(value),
-            crate::tag::Value::Unsigned(value) => {
+        let least_most = |value: &Value| match value {
+            Value::Signed(value) => (least..=most).contains(value),
+            Value::Unsigned(value) => {
                 i64::try_from(*value).is_ok_and(|value| (least..=most).contains(&value))
             }
             _ => true,
@@ -203,7 +203,7 @@ impl Tag {
 /// Which part of a tag.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'a> {
-    pub(super) steps: &'a [super::address::Step<'a>],
+    pub(super) steps: &'a [Step<'a>],
     pub(super) bytes: Option<SimpleDataSegment>,
 }
 
