@@ -14,6 +14,7 @@ mod app;
 mod audit;
 mod backup;
 mod blocks;
+mod desk;
 mod discover;
 mod draft;
 mod error;

@@ -6,17 +6,17 @@ use std::sync::{Arc, Mutex};
 use cipdeck_shared::api::{BrowsePage, BrowseRequest, BrowseStep, BrowsedSymbol, BrowsedType};
 use cipdeck_shared::config::DeviceId;
 use cipdeck_shared::engine::browse::{Access, Browse, BrowseWhat, Symbol};
-use cipdeck_shared::engine::poll::Failure;
 use cipdeck_shared::plan::plant::{self, DevicePlan};
 use cipdeck_shared::tag::{Member, Structure, Type};
 use tokio_util::sync::CancellationToken;
 
-use super::desk::Desk;
-use super::health::Lost;
+use super::poll::way;
 use super::work::in_words;
 use super::{Inner, Plant};
 use crate::actor::Actor;
+use crate::desk::{Desk, Lost};
 use crate::error::ApiError;
+use crate::permit::Order;
 use crate::runner::lock;
 
 /// A question that has been asked.
@@ -128,7 +128,7 @@ impl Plant {
             if browse.requests() > MAX_TYPE_REQUESTS {
                 return Err(ApiError::Conflict("the structure has no end".to_owned()));
             }
-            let reply = desk.ask(actor, &request).await;
+            let reply = desk.ask(&request).await;
             browse.handle_reply(reply.as_deref().map_err(Lost::failure));
         }
         match (browse.kind(), browse.error()) {
@@ -150,9 +150,16 @@ impl Inner {
         Ok((format!("{id} {}", device.config.name), plan))
     }
 
-    async fn desk(&self, actor: &Actor, id: DeviceId, name: &str, plan: &DevicePlan) -> Result<Desk, Lost> {
-        let profile = self.profile(id, plan);
-        Desk::open(&self.runner, self.clock, name, plan, profile, actor).await
+    /// A conversation with a device in somebody's name.
+    pub(super) async fn desk(
+        &self,
+        actor: &Actor,
+        id: DeviceId,
+        name: &str,
+        plan: &DevicePlan,
+    ) -> Result<Desk, Lost> {
+        let way = way(plan, self.profile(id, plan));
+        Desk::open(self.runner.lane(name), self.clock, way, Some(Order::read(actor.clone()))).await
     }
 
     async fn list(
@@ -168,7 +175,7 @@ impl Inner {
         lock(&browsing.found).reason = Browse::caveat(desk.dialect()).map(str::to_owned);
         let mut browse = Browse::new(desk.dialect(), what);
         while let Some(request) = browse.next_request() {
-            let reply = desk.ask(actor, &request).await;
+            let reply = desk.ask(&request).await;
             browse.handle_reply(reply.as_deref().map_err(Lost::failure));
             let mut found = lock(&browsing.found);
             let new = browse.found().get(found.symbols.len()..).unwrap_or_default();
@@ -183,12 +190,6 @@ impl Inner {
             None => Ok(()),
             Some(reason) => Err(Lost { is_denied: false, reason: reason.to_owned() }),
         }
-    }
-}
-
-impl Lost {
-    fn failure(&self) -> Failure {
-        Failure::Lost { reason: self.reason.clone() }
     }
 }
 

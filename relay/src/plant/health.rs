@@ -1,75 +1,11 @@
 //! Whether a device answers, and what it says of itself.
 
 use cipdeck_shared::api::{DeviceHealth, DeviceIdentity, HealthState};
-use cipdeck_shared::config::TargetPath;
-use cipdeck_shared::engine::{Cause, CauseKind};
 use cipdeck_shared::table::{self, Entry};
-use cipdeck_shared::wire::{
-    Epath, GeneralStatus, IdentityAttributes, MessageRouterReply, MessageRouterRequest, ServiceCode, TooLong,
-};
+use cipdeck_shared::wire::IdentityAttributes;
 
-use crate::error::ApiError;
-use crate::runner::{Ended, Refused};
+use crate::desk::Lost;
 use crate::wall_clock;
-
-/// Why a device did not answer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Lost {
-    /// The relay must not ask it.
-    pub(crate) is_denied: bool,
-    /// In words.
-    pub(crate) reason: String,
-}
-
-impl Lost {
-    /// For somebody who has asked for an answer of the device.
-    pub(super) fn into_error(self) -> ApiError {
-        if self.is_denied {
-            ApiError::NotPermitted(self.reason)
-        } else {
-            ApiError::Conflict(format!("the device does not answer: {}", self.reason))
-        }
-    }
-}
-
-/// Get_Attributes_All of Identity, which every device has. CIP Vol 1, 5A-2.
-pub(crate) fn request() -> Result<MessageRouterRequest, TooLong> {
-    MessageRouterRequest::new(ServiceCode::GetAttributesAll, Epath::object(0x01, 1), Vec::new())
-}
-
-/// Bytes around a request that goes on along a route: Unconnected_Send with its path, two sizes, and a pad.
-pub(crate) fn wrapping(path: &TargetPath) -> usize {
-    14 + path.route.bytes().len()
-}
-
-/// The message router reply, or why there is none.
-pub(crate) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
-    let ended = match ended {
-        Ok(ended) => ended,
-        Err(refused) => {
-            let is_denied = matches!(refused, Refused::NotPermitted(_));
-            return Err(Lost { is_denied, reason: refused.to_string() });
-        }
-    };
-    let cause = ended.view.cause.as_ref();
-    let is_answer = cause.is_none_or(|cause| cause.what == CauseKind::RefusedByDevice);
-    match ended.exchange.response().filter(|_| is_answer) {
-        Some(reply) => Ok(reply),
-        None => Err(Lost {
-            is_denied: cause.is_some_and(|cause| cause.what == CauseKind::NotPermitted),
-            reason: cause.map_or_else(|| "there was no answer".to_owned(), in_words),
-        }),
-    }
-}
-
-/// Who the device says that it is.
-pub(crate) fn identity(reply: &[u8]) -> Result<IdentityAttributes, String> {
-    let reply = MessageRouterReply::decode(reply).map_err(|error| error.to_string())?;
-    if reply.status != GeneralStatus::Success {
-        return Err(format!("it does not say what it is: {}", reply.status));
-    }
-    IdentityAttributes::decode(reply.data).map_err(|error| format!("it does not say what it is: {error}"))
-}
 
 /// What everybody sees of a device that has said who it is.
 pub(super) fn good(identity: &IdentityAttributes) -> DeviceHealth {
@@ -97,28 +33,6 @@ pub(super) fn lost(before: &DeviceHealth, lost: &Lost) -> DeviceHealth {
 /// Minor and major faults, bits 8 to 11 of the status word, and the extended status "major fault". CIP Vol 1, 5A-2.
 const fn is_fault(status: u16) -> bool {
     status & 0x0F00 != 0 || status >> 4 & 0xF == 5
-}
-
-fn in_words(cause: &Cause) -> String {
-    let words = match &cause.what {
-        CauseKind::Timeout => "no answer in time",
-        CauseKind::Refused => "nobody listens at its TCP port",
-        CauseKind::Unreachable => "it cannot be reached",
-        CauseKind::Unresolved => "its name is unknown",
-        CauseKind::SessionRefused => "it opens no session",
-        CauseKind::EncapsulationStatus => "it does not take the message",
-        CauseKind::Malformed => "its answer makes no sense",
-        CauseKind::Closed => "it closed the connection",
-        CauseKind::Limit => "too many sessions or connections",
-        // In its own words.
-        CauseKind::NotPermitted => "",
-        other => other.word(),
-    };
-    match (&cause.detail, words) {
-        (Some(detail), "") => detail.clone(),
-        (Some(detail), words) => format!("{words}: {detail}"),
-        (None, words) => words.to_owned(),
-    }
 }
 
 fn named(entry: Option<Entry>, number: u16) -> String {

@@ -2,10 +2,9 @@
 //! with a ticket.
 
 mod browse;
-mod desk;
 mod edit;
 mod entries;
-pub(crate) mod health;
+mod health;
 mod hub;
 mod point;
 mod poll;
@@ -26,7 +25,7 @@ use tokio_util::task::TaskTracker;
 use self::browse::Browsing;
 use self::entries::Entries;
 pub(crate) use self::hub::{Hub, Seen};
-use self::poll::{Work, limits};
+use self::poll::Work;
 use self::write::Pending;
 use crate::error::ApiError;
 use crate::permit::Policy;

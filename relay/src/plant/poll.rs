@@ -9,19 +9,19 @@ use std::time::Duration;
 use cipdeck_shared::api::{DeviceLoad, DeviceStatus, HealthState, Quality};
 use cipdeck_shared::config::{Connecting, DeviceId, GroupId, Profile};
 use cipdeck_shared::engine::Instant;
-use cipdeck_shared::engine::poll::{self, DeviceLimits, Failure, Group, Poller, Reading};
+use cipdeck_shared::engine::poll::{self, Failure, Group, Poller, Reading};
 use cipdeck_shared::plan::plant::DevicePlan;
 use cipdeck_shared::plan::{MessagePlan, TagWay};
-use cipdeck_shared::tag::Dialect;
 use cipdeck_shared::wire::{MessageRouterRequest, TooLong};
 use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
-use super::health::{self, Lost};
+use super::health;
 use super::hub::Hub;
 use super::point::Point;
 use super::work::idle;
 use crate::actor::Actor;
+use crate::desk::{self, Lost};
 use crate::permit::{Order, Policy};
 use crate::runner::{Clock, Ended, Lane, Refused, Runner};
 
@@ -180,7 +180,7 @@ impl Task {
     fn start_polling(&mut self) {
         let Some(work) = self.work.clone().filter(|_| self.profile != Profile::Auto) else { return };
         let Ok(plan) = &work.plan else { return };
-        let mut limits = limits(plan, self.profile);
+        let mut limits = desk::limits(&way(plan, self.profile));
         // Blocks to the same device get their share of what it takes.
         let shared = self.shared.policy.messages_per_second();
         let share = if shared == 0 { u32::MAX } else { (shared / 4 * 3).max(1) };
@@ -203,7 +203,11 @@ impl Task {
         if tokio::time::Instant::now() >= self.health_due {
             // Every device takes this unconnected.
             let way = TagWay { connected: false, ..way(plan, self.profile) };
-            return self.fly(&work.name, true, health::request().and_then(|it| MessagePlan::tag(&way, it)));
+            return self.fly(
+                &work.name,
+                true,
+                desk::identity_request().and_then(|it| MessagePlan::tag(&way, it)),
+            );
         }
         let now = self.shared.clock.now();
         let Some(request) = self.poller.as_mut().and_then(|poller| poller.poll_request(now)) else { return };
@@ -235,7 +239,7 @@ impl Task {
     fn land(&mut self, lane: Lane, ended: &Result<Ended, Refused>) {
         let is_health = self.flight.take().is_some_and(|flight| flight.is_health);
         self.lane = self.is_on().then_some(lane);
-        let reply = health::reply(ended);
+        let reply = desk::reply(ended);
         if let Err(lost) = &reply {
             self.rests_until = tokio::time::Instant::now() + self.rest;
             self.rest = (self.rest * 2).min(LONGEST_REST);
@@ -271,7 +275,7 @@ impl Task {
     /// The device has said what it is, or has refused to.
     fn identified(&mut self, reply: &[u8]) {
         self.health_due = tokio::time::Instant::now() + HEALTH_PERIOD;
-        match health::identity(reply) {
+        match desk::identity(reply) {
             Ok(identity) => {
                 self.status.health = health::good(&identity);
                 if self.profile == Profile::Auto {
@@ -355,16 +359,6 @@ pub(super) fn way(plan: &DevicePlan, profile: Profile) -> TagWay {
         (_, Connecting::Auto | Connecting::Unconnected) => false,
     };
     TagWay { path: plan.path.clone(), profile, connected, timeout_ms: plan.timeout_ms }
-}
-
-/// What a device of this kind takes.
-pub(super) fn limits(plan: &DevicePlan, profile: Profile) -> DeviceLimits {
-    let connected = way(plan, profile).connected;
-    let mut limits = DeviceLimits::of(Dialect::of(profile), connected);
-    if !connected && !plan.path.route.is_empty() {
-        limits.request_max = limits.request_max.saturating_sub(health::wrapping(&plan.path));
-    }
-    limits
 }
 
 async fn landed(flight: &mut Option<Flight>) -> Landed {

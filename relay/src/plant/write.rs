@@ -8,16 +8,15 @@ use cipdeck_shared::config::{Device, DeviceId, Profile, Variable, VariableId, wr
 use cipdeck_shared::engine::poll::{Quality, Reading, Reason};
 use cipdeck_shared::plan::Severity;
 use cipdeck_shared::plan::plant::{self, DevicePlan, VariablePlan};
-use cipdeck_shared::tag::{self, Dialect, Elementary, Type, Value, request};
-use cipdeck_shared::wire::{GeneralStatus, MessageRouterReply, MessageRouterRequest};
+use cipdeck_shared::tag::{Dialect, Elementary, Type, Value};
+use cipdeck_shared::wire::MessageRouterRequest;
 
-use super::desk::Desk;
-use super::health::{self, Lost};
 use super::point::Shown;
 use super::work::in_words;
 use super::{Inner, Plant};
 use crate::actor::Actor;
 use crate::audit::Event;
+use crate::desk::{self, Desk, Lost};
 use crate::error::ApiError;
 use crate::permit::{Confirmed, GOOD_FOR, Offer, Order, record};
 use crate::runner::{Refused, lock};
@@ -45,17 +44,14 @@ impl Plant {
     ) -> Result<WriteTicket, ApiError> {
         let (variable, device, plan, device_plan) = self.0.writable(id)?;
         let name = format!("{id} {} ({})", variable.config.name, plan.name);
-        let profile = self.0.profile(device.id, &device_plan);
-        let (runner, clock) = (&self.0.runner, self.0.clock);
-        let desk = Desk::open(runner, clock, &name, &device_plan, profile, actor).await;
+        let desk = self.0.desk(actor, device.id, &name, &device_plan).await;
         let mut desk = desk.map_err(Lost::into_error)?;
-        let old = desk.variable(actor, &plan).await.map_err(Lost::into_error)?;
+        let old = desk.read(&plan.name, plan.kind.as_ref()).await.map_err(Lost::into_error)?;
         let shown = shown(&variable, &plan);
         let (message, new) = match plan.name.bit() {
             None => whole(&desk, &plan, &old, text),
             Some(bit) => {
-                let number =
-                    desk.read(actor, &plan.name.without_bit(), None).await.map_err(Lost::into_error)?;
+                let number = desk.read(&plan.name.without_bit(), None).await.map_err(Lost::into_error)?;
                 one_bit(&desk, &plan, &number, bit, text)
             }
         }
@@ -164,14 +160,14 @@ impl Inner {
         let ended = desk.lane.run(Some(order)).await?;
         let may_have_acted = ended.view.cause.as_ref().is_some_and(|cause| cause.may_have_acted);
         let ended = Ok(ended);
-        let refused = match health::reply(&ended) {
+        let refused = match desk::reply(&ended) {
             // At the last moment.
             Err(Lost { is_denied: true, reason }) => return Err(ApiError::NotPermitted(reason)),
             Err(lost) => Some(lost.reason),
-            Ok(reply) => refused(reply),
+            Ok(reply) => desk::refused(reply),
         };
         let shown = shown(&variable, &plan);
-        let now = desk.variable(actor, &plan).await.unwrap_or_default();
+        let now = desk.read(&plan.name, plan.kind.as_ref()).await.unwrap_or_default();
         let read_back = value_of(&shown, &now, desk.dialect());
         let is_equal =
             confirmed.new.as_ref().zip(read_back.as_ref()).map(|(new, found)| new.data == found.data);
@@ -221,17 +217,11 @@ fn whole(desk: &Desk, plan: &VariablePlan, old: &Reading, text: &str) -> Result<
         _ => reason(old),
     })?;
     let value = plan.view.parse(kind, text).map_err(|error| error.to_string())?;
-    let data = kind.encode(desk.dialect(), &value).map_err(|error| error.to_string())?;
-    let head = kind
-        .head(desk.dialect())
-        .ok_or("the device has not told the structure's handle: write its members")?;
-    let elements = u16::try_from(kind.elements(desk.dialect())).unwrap_or(u16::MAX);
-    let message =
-        request::write(plan.name.path(), head, elements, &data).map_err(|error| error.to_string())?;
+    let message = desk::whole(desk.dialect(), &plan.name, kind, None, &value)?;
     Ok((message, (kind.clone(), value)))
 }
 
-/// Only a Logix writes a bit without touching the others.
+/// A bit of a whole number.
 fn one_bit(
     desk: &Desk,
     plan: &VariablePlan,
@@ -239,19 +229,11 @@ fn one_bit(
     bit: u8,
     text: &str,
 ) -> Result<Message, String> {
-    if desk.dialect() != Dialect::Logix {
-        return Err("this controller cannot write a single bit: write the whole number".to_owned());
-    }
     let kind = Type::Elementary(Elementary::Bool);
     let value = plan.view.parse(&kind, text).map_err(|error| error.to_string())?;
-    let bits = match &number.kind {
-        Some(Type::Elementary(kind)) => kind.bits().filter(|bits| bit < *bits),
-        Some(_) => None,
-        None => return Err(reason(number)),
-    };
-    let size = bits.ok_or("there is no such bit: it is no whole number, or too small")? / 8;
-    let message = request::write_bit(plan.name.path(), size.into(), bit, value == Value::Bool(true));
-    Ok((message.map_err(|error| error.to_string())?, (kind, value)))
+    let number = number.kind.as_ref().ok_or_else(|| reason(number))?;
+    let on = value == Value::Bool(true);
+    Ok((desk::one_bit(desk.dialect(), &plan.name, number, bit, on)?, (kind, value)))
 }
 
 fn within_limits(variable: &Variable, plan: &VariablePlan, value: &Value) -> Result<(), String> {
@@ -302,15 +284,6 @@ fn read_value(shown: &Shown, kind: Option<&Type>, value: &Value, dialect: Dialec
 
 fn value(shown: &Shown, reading: &Reading, inner: &Inner) -> VariableValue {
     shown.value(&super::poll::point(reading, inner.clock))
-}
-
-/// Why the device has not carried it out, in words.
-fn refused(reply: &[u8]) -> Option<String> {
-    match MessageRouterReply::decode(reply) {
-        Ok(reply) if reply.status == GeneralStatus::Success => None,
-        Ok(reply) => Some(tag::refusal(reply.status, reply.additional.words().next())),
-        Err(error) => Some(error.to_string()),
-    }
 }
 
 fn reason(reading: &Reading) -> String {

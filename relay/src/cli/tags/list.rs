@@ -1,15 +1,14 @@
 //! `cipdeck tags`.
 
 use cipdeck_shared::engine::browse::{Access, Browse, BrowseWhat, Symbol};
-use cipdeck_shared::engine::poll::Failure;
-use cipdeck_shared::tag::{Dialect, Type};
-use cipdeck_shared::wire::MessageRouterRequest;
+use cipdeck_shared::tag::Type;
 use clap::Args;
 use serde::Serialize;
 
 use super::Place;
-use super::controller::Controller;
+use super::controller;
 use crate::cli::{Exit, report, say};
+use crate::desk::{Desk, Lost};
 
 /// The tags of a controller.
 #[derive(Debug, Args)]
@@ -34,21 +33,21 @@ impl List {
             Ok(way) => way,
             Err(exit) => return exit,
         };
-        Controller::with(way, async |controller| self.list(controller).await).await
+        controller::with(way, async |desk| self.list(desk).await).await
     }
 
-    async fn list(&self, controller: &mut Controller) -> Exit {
-        let dialect = controller.dialect();
+    async fn list(&self, desk: &mut Desk) -> Exit {
+        let dialect = desk.dialect();
         let what = if self.system { BrowseWhat::WithSystem } else { BrowseWhat::Tags };
         let mut browse = Browse::new(dialect, what);
         let filter = self.filter.to_lowercase();
         let (mut told, mut entries) = (0, Vec::new());
         while !browse.is_done() {
-            step(controller, &mut browse).await;
+            step(desk, &mut browse).await;
             let new: Vec<_> = browse.found().iter().skip(told).cloned().collect();
             told += new.len();
             for symbol in new.iter().filter(|symbol| symbol.name.to_lowercase().contains(&filter)) {
-                let kind = if self.structures { self.structure(controller, symbol).await } else { None };
+                let kind = if self.structures { self.structure(desk, symbol).await } else { None };
                 let entry = Entry::of(symbol, kind);
                 if self.place.json { entries.push(entry) } else { entry.print() }
             }
@@ -66,11 +65,10 @@ impl List {
     }
 
     /// What the structure of a tag is made of; none for other tags, and where the device does not tell.
-    async fn structure(&self, controller: &mut Controller, symbol: &Symbol) -> Option<Type> {
-        let dialect: Dialect = controller.dialect();
-        let mut browse = Browse::template(dialect, symbol.template?);
+    async fn structure(&self, desk: &mut Desk, symbol: &Symbol) -> Option<Type> {
+        let mut browse = Browse::template(desk.dialect(), symbol.template?);
         while !browse.is_done() {
-            step(controller, &mut browse).await;
+            step(desk, &mut browse).await;
         }
         if let Some(error) = browse.error() {
             eprintln!("{}: {error}", symbol.name);
@@ -79,13 +77,10 @@ impl List {
     }
 }
 
-async fn step(controller: &mut Controller, browse: &mut Browse) {
+async fn step(desk: &mut Desk, browse: &mut Browse) {
     let Some(request) = browse.next_request() else { return };
-    let reply = match MessageRouterRequest::decode(&request) {
-        Ok(request) => controller.ask(request).await.map_err(|lost| lost.reason),
-        Err(error) => Err(error.to_string()),
-    };
-    browse.handle_reply(reply.as_deref().map_err(|reason| Failure::Lost { reason: reason.clone() }));
+    let reply = desk.ask(&request).await;
+    browse.handle_reply(reply.as_deref().map_err(Lost::failure));
 }
 
 /// A tag as it is printed.

@@ -5,7 +5,7 @@ use cipdeck_shared::tag::Value;
 use clap::Args;
 use serde::Serialize;
 
-use super::controller::Controller;
+use super::controller;
 use super::{Place, Tag, tag};
 use crate::cli::{Exit, report, say};
 
@@ -31,12 +31,14 @@ impl Read {
             Ok(way) => way,
             Err(exit) => return exit,
         };
-        Controller::with(way, async |controller| {
-            let readings = controller.read(items(&tags)).await;
+        controller::with(way, async |desk| {
+            let readings = match desk.read_all(items(&tags)).await {
+                Ok(readings) => readings,
+                Err(lost) => return Exit::unanswered(&lost.reason),
+            };
             let results: Vec<_> = tags.iter().zip(&readings).map(|(tag, it)| Result::of(tag, it)).collect();
             if place.json {
-                let report =
-                    Report { path: &place.path, profile: controller.profile().word(), tags: &results };
+                let report = Report { path: &place.path, profile: desk.profile().word(), tags: &results };
                 say(&report::json(&report));
             } else {
                 results.iter().for_each(Result::print);

@@ -1,15 +1,15 @@
 //! `cipdeck write`: reads what is there, writes, and reads again.
 
 use cipdeck_shared::engine::poll::{Quality, Reading, Reason};
-use cipdeck_shared::tag::{self, Dialect, Elementary, TagHead, Type, Value, request};
-use cipdeck_shared::wire::{GeneralStatus, MessageRouterReply, MessageRouterRequest};
+use cipdeck_shared::tag::{Elementary, Type, Value};
 use clap::Args;
 use serde_json::json;
 
-use super::controller::Controller;
-use super::read::{exit, items};
+use super::controller;
+use super::read::exit;
 use super::{Place, Tag, tag};
 use crate::cli::{Exit, say};
+use crate::desk::{self, Desk, Lost};
 
 /// A tag that is written.
 #[derive(Debug, Args)]
@@ -36,114 +36,64 @@ impl Write {
             Ok(way) => way,
             Err(exit) => return exit,
         };
-        Controller::with(way, async |controller| {
-            let old = read(controller, &tag).await;
-            let request = match tag.name.bit() {
-                Some(bit) => {
-                    let whole = Tag { name: tag.name.without_bit(), kind: tag.kind.clone() };
-                    let whole = read(controller, &whole).await;
-                    bit_of(controller.dialect(), &tag, &whole, bit, &value)
-                }
-                None => plan(controller, &tag, &old, &value),
-            };
-            let request = match request {
-                Ok(request) => request,
-                Err(exit) => return exit,
-            };
-            let reply = match controller.ask(request).await {
-                Ok(reply) => reply,
-                Err(lost) => {
-                    let sent = "if it had been sent, the device may have carried it out";
-                    return Exit::unanswered(&format!("{}: {}; {sent}", tag.name, lost.reason));
-                }
-            };
-            let refused = refused(&reply);
-            let now = read(controller, &tag).await;
-            print(&place, &tag, [&old, &now], refused.as_deref());
-            if refused.is_some() { Exit::REFUSED } else { exit(&[now]) }
+        controller::with(way, async |desk| match write(desk, &place, &tag, &value).await {
+            Ok(exit) | Err(exit) => exit,
         })
         .await
     }
 }
 
-async fn read(controller: &mut Controller, tag: &Tag) -> Reading {
-    let reading = controller.read(items(std::slice::from_ref(tag))).await.pop().unwrap_or_default();
+async fn write(desk: &mut Desk, place: &Place, tag: &Tag, text: &str) -> Result<Exit, Exit> {
+    let wrong = |error: &dyn std::fmt::Display| Exit::usage(&format!("{}: {error}", tag.name));
+    let lost = |lost: Lost| {
+        let sent = "if it had been sent, the device may have carried it out";
+        Exit::unanswered(&format!("{}: {}; {sent}", tag.name, lost.reason))
+    };
+    let old = read(desk, tag).await;
+    let message = match tag.name.bit() {
+        None => {
+            // Somebody who says the type may be wrong about it: that is the device's to refuse.
+            let kind = known(tag, tag.kind.as_ref().or(old.kind.as_ref()), &old)?;
+            let value = kind.parse_value(text).map_err(|error| wrong(&error))?;
+            desk::whole(desk.dialect(), &tag.name, kind, old.kind.as_ref(), &value)
+        }
+        Some(bit) => {
+            let number = read(desk, &Tag { name: tag.name.without_bit(), kind: None }).await;
+            let on = Type::Elementary(Elementary::Bool).parse_value(text).map_err(|error| wrong(&error))?;
+            let kind = known(tag, number.kind.as_ref(), &number)?;
+            desk::one_bit(desk.dialect(), &tag.name, kind, bit, on == Value::Bool(true))
+        }
+    };
+    desk.put(message.map_err(|error| wrong(&error))?).map_err(|error| wrong(&error))?;
+    let ended = desk.lane.run(None).await;
+    let refused = desk::refused(desk::reply(&ended).map_err(lost)?);
+    let now = read(desk, tag).await;
+    print(place, tag, [&old, &now], refused.as_deref());
+    Ok(if refused.is_some() { Exit::REFUSED } else { exit(&[now]) })
+}
+
+async fn read(desk: &mut Desk, tag: &Tag) -> Reading {
+    let reading = desk.read(&tag.name, tag.kind.as_ref()).await.unwrap_or_default();
     if !matches!(reading.reason, Some(Reason::OtherType(_))) {
         return reading;
     }
     // It is not what somebody says that it is: what is there is shown as the device has it.
-    let own = Tag { kind: None, ..tag.clone() };
-    controller.read(items(&[own])).await.pop().unwrap_or_default()
+    desk.read(&tag.name, None).await.unwrap_or_default()
 }
 
-/// The message, or why there is none.
-fn plan(controller: &Controller, tag: &Tag, old: &Reading, text: &str) -> Result<MessageRouterRequest, Exit> {
-    let (dialect, path) = (controller.dialect(), tag.name.path());
-    // Somebody who says the type may be wrong about it: that is the device's to refuse.
-    let Some(kind) = tag.kind.as_ref().or(old.kind.as_ref()) else {
-        eprintln!("{}: {}", tag.name, old.reason.as_ref().map_or_else(unknown, Reason::text));
-        return Err(if old.quality == Quality::Good {
-            Exit::usage(&unknown())
-        } else {
-            exit(std::slice::from_ref(old))
-        });
-    };
-    let wrong = |error: &dyn std::fmt::Display| Exit::usage(&format!("{}: {error}", tag.name));
-    let value = kind.parse_value(text).map_err(|error| wrong(&error))?;
-    let data = kind.encode(dialect, &value).map_err(|error| wrong(&error))?;
-    let head = head(kind, dialect, old).ok_or_else(|| Exit::usage(&unknown()))?;
-    let elements = u16::try_from(kind.elements(dialect)).unwrap_or(u16::MAX);
-    let request = request::write(path, head, elements, &data).map_err(|error| wrong(&error))?;
-    let (length, max) = (request.bytes().len(), controller.limits().request_max);
-    if length > max {
-        let less = "write its elements or members one by one, or use --connected";
-        return Err(wrong(&format!("the message has {length} bytes, the device takes {max}: {less}")));
-    }
-    Ok(request)
-}
-
-/// A structure is written with the handle that it was read with.
-fn head(kind: &Type, dialect: Dialect, old: &Reading) -> Option<TagHead> {
-    kind.head(dialect).or_else(|| old.kind.as_ref()?.head(dialect))
-}
-
-/// Only a Logix writes a bit without touching the others.
-fn bit_of(
-    dialect: Dialect,
-    tag: &Tag,
-    whole: &Reading,
-    bit: u8,
-    text: &str,
-) -> Result<MessageRouterRequest, Exit> {
-    let wrong = |error: &dyn std::fmt::Display| Exit::usage(&format!("{}: {error}", tag.name));
-    if dialect != Dialect::Logix {
-        return Err(wrong(&"this controller cannot write a single bit: write the whole number"));
-    }
-    if whole.quality != Quality::Good {
-        eprintln!("{}: {}", tag.name, whole.reason.as_ref().map_or_else(unknown, Reason::text));
-        return Err(exit(std::slice::from_ref(whole)));
-    }
-    let on = Type::Elementary(Elementary::Bool).parse_value(text).map_err(|error| wrong(&error))?;
-    let bits = match whole.kind {
-        Some(Type::Elementary(kind)) => kind.bits().filter(|bits| bit < *bits),
-        _ => None,
-    };
-    let size = bits.ok_or_else(|| wrong(&"there is no such bit: it is no whole number, or too small"))? / 8;
-    let request = request::write_bit(tag.name.path(), size.into(), bit, on == Value::Bool(true));
-    request.map_err(|error| wrong(&error))
+/// The type, or why nobody knows it.
+fn known<'a>(tag: &Tag, kind: Option<&'a Type>, reading: &Reading) -> Result<&'a Type, Exit> {
+    kind.ok_or_else(|| {
+        if reading.quality == Quality::Good {
+            return Exit::usage(&format!("{}: {}", tag.name, unknown()));
+        }
+        eprintln!("{}: {}", tag.name, reading.reason.as_ref().map_or_else(unknown, Reason::text));
+        exit(std::slice::from_ref(reading))
+    })
 }
 
 fn unknown() -> String {
     "the device does not say what it is: give its type, as in TAG=DINT".to_owned()
-}
-
-/// Why the device has not carried it out, in words.
-fn refused(reply: &[u8]) -> Option<String> {
-    match MessageRouterReply::decode(reply) {
-        Ok(reply) if reply.status == GeneralStatus::Success => None,
-        Ok(reply) => Some(tag::refusal(reply.status, reply.additional.words().next())),
-        Err(error) => Some(error.to_string()),
-    }
 }
 
 fn print(place: &Place, tag: &Tag, [old, now]: [&Reading; 2], refused: Option<&str>) {
