@@ -5,11 +5,14 @@ use anyhow::Result;
 use crate::{
     process::{cargo, run},
     report::Report,
-    workspace,
+    system::Consent,
+    tools, workspace,
 };
 
 /// Builds the benchmarks as they are shipped and runs them; tables go to the terminal and to target/bench.
-pub(crate) fn all(report: &mut Report, quick: bool, only: Option<String>) -> Result<()> {
+pub(crate) fn all(report: &mut Report, quick: bool, only: Option<String>, consent: Consent) -> Result<()> {
+    let with_tags = only.as_deref().is_none_or(|only| "tags".contains(only));
+    let python = if with_tags { Some(tools::tag_clients(report, consent)?) } else { None };
     let folder = workspace::target().join("bench");
     let bench = |name: &str| {
         let mut command = cargo();
@@ -25,6 +28,9 @@ pub(crate) fn all(report: &mut Report, quick: bool, only: Option<String>) -> Res
         command.arg("all").arg("--out").arg(&folder);
         if quick {
             command.arg("--quick");
+        }
+        if let Some(python) = python {
+            command.env("CIPDECK_TAGS_PYTHON", python);
         }
         if let Some(only) = only {
             command.args(["--only", &only]);

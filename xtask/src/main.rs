@@ -22,7 +22,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::{frontend::Profile, report::Report, run::Addresses, toolchain::Preference};
+use crate::{frontend::Profile, report::Report, run::Addresses, system::Consent, toolchain::Preference};
 
 fn main() -> ExitCode {
     let mut report = Report::new();
@@ -63,14 +63,16 @@ enum Task {
         #[command(flatten)]
         toolchain: Preference,
     },
-    /// Measures our client beside others, through the relay, and with 1,000 cyclic blocks; needs Linux.
+    /// Measures our client beside others, through the relay, with 1,000 cyclic blocks, and with tags; needs Linux.
     Bench {
         /// Fewer and shorter rounds: good for a look, not for a document.
         #[arg(long)]
         quick: bool,
-        /// Only tables whose name contains this: peers, simulated, websocket, cyclic.
+        /// Only tables whose name contains this: peers, simulated, websocket, history, cyclic, tags, plant.
         #[arg(long)]
         only: Option<String>,
+        #[command(flatten)]
+        consent: Consent,
     },
     /// Format, lints, layers, documentation, licences.
     Check(Preference),
@@ -98,7 +100,7 @@ impl Task {
         match self {
             Self::Run { addresses, toolchain } => run::all(report, toolchain, addresses)?,
             Self::Test { long, toolchain } => test::all(report, toolchain, long)?,
-            Self::Bench { quick, only } => bench::all(report, quick, only)?,
+            Self::Bench { quick, only, consent } => bench::all(report, quick, only, consent)?,
             Self::Check(preference) => check::all(report, preference)?,
             Self::Dist(preference) => dist::build(report, preference)?,
             Self::Toolchain(preference) => {

@@ -46,12 +46,17 @@ pub(crate) fn for_tests(report: &mut Report, consent: Consent) -> Result<TestToo
         let python = python_with(consent, "schemathesis", &[SCHEMATHESIS])?;
         Ok(python.with_file_name(format!("schemathesis{}", env::consts::EXE_SUFFIX)))
     })?;
-    let tags_python = report.step("tool: pycomm3, pylogix and aphyt, clients that are not ours", || {
-        python_with(consent, "tags", TAG_CLIENTS)
-    })?;
+    let tags_python = tag_clients(report, consent)?;
     let tshark = report.step("tool: tshark, a reader of captures that is not ours", || tshark(consent))?;
     report.step("tool: ip, openssl and curl, callers that are not ours", || callers(consent))?;
     Ok(TestTools { chromedriver, cpppo_python, schemathesis, tags_python, tshark })
+}
+
+/// A Python that can import the clients of tags.
+pub(crate) fn tag_clients(report: &mut Report, consent: Consent) -> Result<PathBuf> {
+    report.step("tool: pycomm3, pylogix and aphyt, clients that are not ours", || {
+        python_with(consent, "tags", TAG_CLIENTS)
+    })
 }
 
 /// Installs cargo-deny if it is missing.
