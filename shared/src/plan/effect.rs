@@ -68,7 +68,7 @@ fn look(bytes: &[u8], route: &Epath, depth: usize, found: &mut Vec<Effect>) {
         return;
     };
     match inside(&request, object) {
-        Inside::Nothing => found.push(object.gets(request.service(), route)),
+        Inside::Nothing => found.push(object.gets(request.service(), route, found.last())),
         Inside::Requests(hops, parts) if depth < MAX_DEPTH => {
             let route = route.clone().join(&hops);
             for part in parts {
@@ -76,7 +76,7 @@ fn look(bytes: &[u8], route: &Epath, depth: usize, found: &mut Vec<Effect>) {
             }
         }
         Inside::Requests(..) | Inside::Unreadable => {
-            found.push(Effect { access: Access::Unknown, ..object.gets(request.service(), route) });
+            found.push(Effect { access: Access::Unknown, ..object.gets(request.service(), route, None) });
         }
     }
 }
@@ -167,10 +167,19 @@ impl Object {
         rest_is_clear.then_some(Self { class: small(class)?, instance, attribute: small(attribute)? })
     }
 
-    fn gets(self, service: ServiceCode, route: &Epath) -> Effect {
+    /// `before`: the effect before it. A packet of reads is hundreds of the same: what the table says of the same
+    /// service of the same class is not looked up again.
+    fn gets(self, service: ServiceCode, route: &Epath, before: Option<&Effect>) -> Effect {
         let Self { class, instance, attribute } = self;
-        // Names are those of tags.
-        let access = table::classify(service, class.unwrap_or(ClassCode::Symbol.0));
+        // What is not understood has no class either, and is unknown.
+        let same = |before: &&Effect| {
+            before.service == service && before.class == class && before.access != Access::Unknown
+        };
+        let access = match before.filter(same) {
+            Some(before) => before.access,
+            // Names are those of tags.
+            None => table::classify(service, class.unwrap_or(ClassCode::Symbol.0)),
+        };
         Effect { route: route.clone(), service, class, instance, attribute, access }
     }
 }
