@@ -80,6 +80,34 @@ fn what_is_carried_counts_and_not_what_carries_it() {
 }
 
 #[test]
+fn a_request_in_a_packet_is_judged_as_it_is_alone() {
+    let requests: [&[u8]; 8] = [
+        &GET,
+        &SET,
+        // tags: a read, a write, a read of what nobody understands, a read by fragments
+        &hex!("4C 03 91 04 54 41 47 31 01 00"),
+        &hex!("4D 03 91 04 54 41 47 31 C4 00 01 00 01 00 00 00"),
+        &hex!("4C 01 30 01 01 00"),
+        &hex!("52 03 91 04 54 41 47 31 01 00 00 00 00 00"),
+        // the same numbers for other classes
+        &hex!("4C 02 20 6C 24 01 00 00 00 00 10 00"),
+        &hex!("0A 02 20 02 24 01 01 00"),
+    ];
+    for first in requests {
+        for second in requests {
+            for third in requests {
+                let alone: Vec<_> = [first, second, third].into_iter().flat_map(effects).collect();
+                assert_eq!(
+                    effects(&together(&[first, second, third])),
+                    alone,
+                    "{first:02x?} {second:02x?} {third:02x?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_write_on_a_route_inside_of_a_packet_is_a_write_with_its_whole_route() {
     let hidden = together(&[&GET, &on(slot(2), &on(slot(5), &SET)), &GET]);
     let found = effects(&hidden);
