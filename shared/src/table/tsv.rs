@@ -28,6 +28,7 @@ impl Table {
     }
 
     /// All rows below the heading.
+    #[cfg(test)]
     pub(super) fn rows(self) -> impl Iterator<Item = Row> {
         self.0.lines().skip(1).filter_map(Row::parse)
     }
