@@ -2,8 +2,8 @@ use alloc::string::ToString;
 use alloc::vec;
 
 use super::*;
-use crate::config::{Choice, GroupId};
-use crate::tag::Display;
+use crate::config::{Choice, GroupId, NewVariable, Variable, VariableId};
+use crate::tag::{Display, Scale};
 
 fn variable_of(id: u32, parent: Option<u32>, name: &str, address: &str, kind: &str) -> Variable {
     let config = VariableConfig {

@@ -1,52 +1,24 @@
-//! The task of one device: sends what its [`Poller`] asks for, asks the device how it is, and tells the hub.
+//! What one device is asked for, message by message.
 
 use std::collections::BTreeMap;
-use std::future::Future;
-use std::pin::Pin;
 use std::sync::Arc;
 use std::time::Duration;
 
-use cipdeck_shared::api::{DeviceLoad, DeviceStatus, HealthState, Quality};
-use cipdeck_shared::config::{Connecting, DeviceId, GroupId, Profile};
-use cipdeck_shared::engine::Instant;
-use cipdeck_shared::engine::poll::{self, Failure, Group, Poller, Reading};
-use cipdeck_shared::plan::plant::DevicePlan;
+use cipdeck_shared::api::{DeviceStatus, HealthState, Quality};
+use cipdeck_shared::config::{DeviceId, GroupId, Profile};
+use cipdeck_shared::engine::poll::{Failure, Poller};
 use cipdeck_shared::plan::{MessagePlan, TagWay};
 use cipdeck_shared::wire::{MessageRouterRequest, TooLong};
-use tokio::sync::watch;
-use tokio_util::sync::CancellationToken;
 
-use super::health;
-use super::hub::Hub;
-use super::point::Point;
-use super::work::idle;
+use super::flight::Flight;
+use super::{Shared, Work, load, point, way};
 use crate::actor::Actor;
 use crate::desk::{self, Lost};
-use crate::permit::{Order, Policy};
-use crate::runner::{Clock, Ended, Lane, Refused, Runner};
-
-/// What a device is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Work {
-    /// Whose.
-    pub(super) device: DeviceId,
-    /// What people call it.
-    pub(super) name: String,
-    /// Where it is; in words why it cannot be asked.
-    pub(super) plan: Result<DevicePlan, String>,
-    /// What is read.
-    pub(super) groups: Vec<Group>,
-}
-
-/// What the tasks of all devices share.
-#[derive(Clone, Debug)]
-pub(super) struct Shared {
-    pub(super) hub: Arc<Hub>,
-    pub(super) runner: Runner,
-    pub(super) policy: Arc<Policy>,
-    pub(super) clock: Clock,
-    pub(super) stop: CancellationToken,
-}
+use crate::permit::Order;
+use crate::plant::health;
+use crate::plant::point::Point;
+use crate::plant::work::idle;
+use crate::runner::{Ended, Lane, Refused};
 
 /// A device is asked how it is so often.
 const HEALTH_PERIOD: Duration = Duration::from_secs(30);
@@ -58,41 +30,16 @@ const LONGEST_REST: Duration = Duration::from_secs(5);
 /// What polling costs is told at most so often.
 const STATUS_PAUSE: Duration = Duration::from_millis(250);
 
-/// Runs until the device is forgotten or the relay stops.
-pub(super) async fn run(shared: Shared, mut work: watch::Receiver<Arc<Work>>) {
-    let first = Arc::clone(&work.borrow_and_update());
-    let mut task = Task::new(shared, first.device);
-    task.take(&first);
-    loop {
-        task.publish();
-        task.send();
-        let wake = task.wake();
-        let stop = task.shared.stop.clone();
-        tokio::select! {
-            biased;
-            () = stop.cancelled() => return,
-            changed = work.changed() => {
-                if changed.is_err() {
-                    return;
-                }
-                let work = Arc::clone(&work.borrow_and_update());
-                task.take(&work);
-            }
-            (lane, ended) = landed(&mut task.flight) => task.land(lane, &ended),
-            () = wait(wake) => {}
-        }
-    }
-}
-
-struct Task {
-    shared: Shared,
+/// What is done for one device, and what is known of it.
+pub(super) struct Task {
+    pub(super) shared: Shared,
     device: DeviceId,
     work: Option<Arc<Work>>,
     /// From when the device is known.
     poller: Option<Poller>,
     profile: Profile,
     lane: Option<Lane>,
-    flight: Option<Flight>,
+    pub(super) flight: Option<Flight>,
     status: DeviceStatus,
     /// The device is asked how it is.
     health_due: tokio::time::Instant,
@@ -104,16 +51,8 @@ struct Task {
     tell: tokio::time::Instant,
 }
 
-struct Flight {
-    is_health: bool,
-    message: Pin<Box<dyn Future<Output = Landed> + Send>>,
-}
-
-/// The lane comes back with what has become of its message.
-type Landed = (Lane, Result<Ended, Refused>);
-
 impl Task {
-    fn new(shared: Shared, device: DeviceId) -> Self {
+    pub(super) fn new(shared: Shared, device: DeviceId) -> Self {
         let now = tokio::time::Instant::now();
         Self {
             shared,
@@ -133,7 +72,7 @@ impl Task {
     }
 
     /// Something else is to be done from now on.
-    fn take(&mut self, work: &Arc<Work>) {
+    pub(super) fn take(&mut self, work: &Arc<Work>) {
         let before = self.work.replace(Arc::clone(work));
         let is_same_device = before.as_ref().is_some_and(|before| before.plan == work.plan);
         if !is_same_device {
@@ -194,7 +133,7 @@ impl Task {
     }
 
     /// Sends what is due, if nothing is under way.
-    fn send(&mut self) {
+    pub(super) fn send(&mut self) {
         if self.flight.is_some() || !self.is_on() || tokio::time::Instant::now() < self.rests_until {
             return;
         }
@@ -236,7 +175,7 @@ impl Task {
     }
 
     /// A message has ended.
-    fn land(&mut self, lane: Lane, ended: &Result<Ended, Refused>) {
+    pub(super) fn land(&mut self, lane: Lane, ended: &Result<Ended, Refused>) {
         let is_health = self.flight.take().is_some_and(|flight| flight.is_health);
         self.lane = self.is_on().then_some(lane);
         let reply = desk::reply(ended);
@@ -308,7 +247,7 @@ impl Task {
     }
 
     /// When something is to be done, if nothing happens before.
-    fn wake(&self) -> Option<tokio::time::Instant> {
+    pub(super) fn wake(&self) -> Option<tokio::time::Instant> {
         let tell = (self.told.as_ref() != Some(&self.status)).then_some(self.tell);
         if !self.is_on() {
             return tell;
@@ -321,7 +260,7 @@ impl Task {
     }
 
     /// Tells what has changed.
-    fn publish(&mut self) {
+    pub(super) fn publish(&mut self) {
         let clock = self.shared.clock;
         if let Some(poller) = &mut self.poller {
             let mut points = Vec::new();
@@ -349,63 +288,5 @@ impl Task {
             self.told = Some(self.status.clone());
             self.tell = now + STATUS_PAUSE;
         }
-    }
-}
-
-/// How messages about tags get to a device of this kind.
-pub(super) fn way(plan: &DevicePlan, profile: Profile) -> TagWay {
-    let connected = match (profile, plan.connecting) {
-        (Profile::Micro800, _) | (_, Connecting::Connected) => true,
-        (_, Connecting::Auto | Connecting::Unconnected) => false,
-    };
-    TagWay { path: plan.path.clone(), profile, connected, timeout_ms: plan.timeout_ms }
-}
-
-async fn landed(flight: &mut Option<Flight>) -> Landed {
-    match flight {
-        Some(flight) => flight.message.as_mut().await,
-        None => std::future::pending().await,
-    }
-}
-
-async fn wait(until: Option<tokio::time::Instant>) {
-    match until {
-        Some(until) => tokio::time::sleep_until(until).await,
-        None => std::future::pending().await,
-    }
-}
-
-/// What the hub keeps of a reading.
-pub(super) fn point(reading: &Reading, clock: Clock) -> Point {
-    let at = |instant: Instant| clock.at(instant);
-    Point {
-        quality: match reading.quality {
-            poll::Quality::Waiting => Quality::Waiting,
-            poll::Quality::Good => Quality::Good,
-            poll::Quality::Stale => Quality::Stale,
-            poll::Quality::Bad => Quality::Bad,
-        },
-        reason: reading.reason.as_ref().map(poll::Reason::text),
-        value: reading.value.clone(),
-        kind: reading.kind.clone(),
-        at: reading.at.map(at),
-    }
-}
-
-fn load(load: poll::Load, items: u32, work: Option<&Work>) -> DeviceLoad {
-    let periods =
-        work.iter().flat_map(|work| &work.groups).filter(|group| group.on).map(|group| group.period);
-    let shortest = periods.min().map_or(u64::MAX, |period| period.0.saturating_mul(1_000));
-    DeviceLoad {
-        requests: load.requests,
-        requests_per_s: load.last_second,
-        requests_per_cycle: load.requests_per_cycle,
-        cycle_us: load.cycle_us,
-        lateness_us: load.lateness_us,
-        skipped_periods: load.skipped_periods,
-        items,
-        bad_items: load.bad_items,
-        // Requests that are only spread over the period keep nothing waiting.
-        is_limited: load.is_limited && load.cycle_us >= shortest,
     }
 }
