@@ -2,15 +2,15 @@
 
 use cipdeck_shared::{
     api::{
-        BrowseRequest, CopyDevice, DiscoverRequest, Discovered, NewValue, NewVariables, VariableWritten,
-        WriteTicket, WriteVariable,
+        BrowseRequest, CopyDevice, DiscoverRequest, Discovered, NewValue, NewVariables, WriteTicket,
+        WriteVariable, Written,
     },
     config::{
         Device, DeviceConfig, DeviceId, Group, GroupConfig, GroupId, NewVariable, Variable, VariableId,
     },
 };
 use gloo_net::http::Method;
-use serde::{Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::net::rest::{self, Answered};
 
@@ -59,8 +59,23 @@ pub async fn offer(id: VariableId, text: String) -> Answered<WriteTicket> {
     send(Method::POST, &format!("variables/{id}/offer"), &NewValue { text }).await
 }
 
+/// What became of a write, without the value, which comes over the WebSocket.
+#[derive(Debug, Deserialize)]
+pub struct Done {
+    /// Whether the device has taken it.
+    pub is_done: bool,
+    /// Why it has not.
+    #[serde(default)]
+    pub reason: Option<String>,
+    /// It was sent, and no answer came.
+    #[serde(default)]
+    pub may_have_acted: bool,
+    /// Before, written, read afterwards.
+    pub written: Written,
+}
+
 /// The second half.
-pub async fn write(id: VariableId, ticket: String) -> Answered<VariableWritten> {
+pub async fn write(id: VariableId, ticket: String) -> Answered<Done> {
     send(Method::POST, &format!("variables/{id}/write"), &WriteVariable { ticket }).await
 }
 

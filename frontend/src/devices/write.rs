@@ -7,7 +7,7 @@ mod window;
 use std::rc::Rc;
 
 use cipdeck_shared::{
-    api::{VariableWritten, WriteTicket},
+    api::WriteTicket,
     config::{Device, Variable},
 };
 use yew::prelude::*;
@@ -52,7 +52,7 @@ pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
     let now = use_value(props.variable.id);
     let (asking, writing) = (use_action(), use_action());
     let typed = use_state(String::new);
-    let (offer, done) = (use_state(|| Offer::None), use_state(|| None::<Rc<VariableWritten>>));
+    let (offer, done) = (use_state(|| Offer::None), use_state(|| None::<Rc<api::Done>>));
     let config = &props.variable.config;
     let title = tr!("write_value.title", name = config.name);
     let on_close = props.on_close.clone();

@@ -1,6 +1,6 @@
 //! What is asked of the relay, and what comes of it.
 
-use std::{future::Future, rc::Rc};
+use std::{future::Future, pin::Pin, rc::Rc};
 
 use cipdeck_shared::api::Problem;
 use gloo_net::http::Method;
@@ -79,6 +79,15 @@ impl Action {
         work: impl Future<Output = Answered<T>> + 'static,
         done: impl FnOnce(T) + 'static,
     ) {
+        let work = async move {
+            let answer = work.await?;
+            Ok(Box::new(move || done(answer)) as Done)
+        };
+        self.run(Box::pin(work));
+    }
+
+    /// Once for all kinds of work: each of its own would be 5 kB of the page.
+    fn run(&self, work: Pin<Box<dyn Future<Output = Answered<Done>>>>) {
         if *self.busy {
             return;
         }
@@ -88,15 +97,18 @@ impl Action {
             let answer = work.await;
             action.busy.set(false);
             match answer {
-                Ok(answer) => {
+                Ok(done) => {
                     action.problem.set(None);
-                    done(answer);
+                    done();
                 }
                 Err(problem) => action.problem.set(Some(Rc::new(problem))),
             }
         });
     }
 }
+
+/// What follows an answer.
+type Done = Box<dyn FnOnce()>;
 
 /// An action of a form or a button.
 #[hook]

@@ -7,17 +7,13 @@ use std::{
 };
 
 use cipdeck_shared::{
-    api::{DeviceStatus, LIVE_PROTOCOL, LiveClientMessage, LiveServerMessage, SessionState},
+    api::{DeviceStatus, LIVE_PROTOCOL, LiveClientMessage, SessionState, Tree as Listed},
     config::{DeviceId, GroupId},
 };
 use gloo_timers::callback::Timeout;
 use yew::{Callback, platform::spawn_local};
 
-use super::{
-    newest::{Newest, Values},
-    tree::Tree,
-    values::ValueStore,
-};
+use super::{heard::Heard, tree::Tree, values::ValueStore};
 use crate::{
     browser,
     net::{Action, Input, Link, Reconnect, Socket, Writing, session},
@@ -228,56 +224,46 @@ impl Plant {
 
     fn hear(&self, text: &str) {
         let start = browser::now_ms();
-        if let Some(Values { group, values }) = Values::read(text) {
-            self.0.values.put(group, values, start);
-        } else if let Ok(message) = serde_json::from_str(text) {
-            // A message of a newer relay that we do not know is none of our business.
+        if let Some(message) = Heard::read(text) {
             self.take(message, start);
         }
         self.0.spent.emit(browser::now_ms() - start);
     }
 
-    fn take(&self, message: LiveServerMessage, now_ms: f64) {
+    fn take(&self, message: Heard, now_ms: f64) {
         match message {
-            LiveServerMessage::Hello { protocol, .. } if protocol != LIVE_PROTOCOL => {
-                self.show(Link::Foreign { protocol });
+            Heard::Values(group, values) => return self.0.values.put(group, values, now_ms),
+            Heard::Hello(protocol) if protocol != LIVE_PROTOCOL => {
+                return self.show(Link::Foreign { protocol });
             }
-            LiveServerMessage::Hello { .. } => {
+            Heard::Hello(_) => {
                 if self.0.machine.borrow().was_online() {
                     // Nobody has told what has changed in between.
                     self.0.watched.borrow_mut().iter_mut().for_each(|(_, edition)| *edition += 1);
                 }
                 self.input(Input::Hello);
                 self.tell_watched();
-                self.show(Link::Online { latency_ms: None });
+                return self.show(Link::Online { latency_ms: None });
             }
-            LiveServerMessage::Values { group, values } => {
-                self.0.values.put(group, values.into_iter().map(Newest::from).collect(), now_ms);
+            Heard::Tree(Listed { devices, groups }) => {
+                self.0.tree.replace(Some(Rc::new(Tree::sorted(devices, groups))));
             }
-            LiveServerMessage::Tree(tree) => {
-                self.0.tree.replace(Some(Rc::new(Tree::sorted(tree.devices, tree.groups))));
-                self.0.watchers.wake();
-            }
-            LiveServerMessage::Variables { group } => {
+            Heard::Variables(group) => {
                 if let Some(edition) = self.0.watched.borrow_mut().get_mut(&group) {
                     *edition += 1;
                 }
-                self.0.watchers.wake();
             }
-            LiveServerMessage::Status { devices } => {
+            Heard::Status(devices) => {
                 for status in devices {
                     self.0.statuses.borrow_mut().insert(status.device, Rc::new(status));
                 }
-                self.0.watchers.wake();
             }
-            // Our own messages are right.
-            LiveServerMessage::Problem { .. } => {}
-            LiveServerMessage::Access(state) => {
+            Heard::Access(state) => {
                 let left_ms = state.window.as_ref().map_or(0, |window| window.left_ms);
                 self.0.writing.replace(Rc::new(Writing::heard(state, left_ms)));
-                self.0.watchers.wake();
             }
         }
+        self.0.watchers.wake();
     }
 
     fn show(&self, link: Link) {

@@ -11,7 +11,7 @@ use cipdeck_shared::{
 };
 use yew::Callback;
 
-use super::newest::Newest;
+use super::heard::Newest;
 use crate::{
     devices::trend::Series,
     store::{AskForFrame, Shelf, Watch, Watchers},

@@ -1,12 +1,15 @@
 //! What became of a write.
 
-use cipdeck_shared::api::{ReadValue, VariableWritten};
+use cipdeck_shared::api::ReadValue;
 use yew::prelude::*;
 
-use crate::{devices::i18n::tr, kit::Shape};
+use crate::{
+    devices::{api::Done, i18n::tr},
+    kit::Shape,
+};
 
 /// The verdict first, then old, new and what was read afterwards.
-pub(super) fn outcome(done: &VariableWritten, on_close: Callback<MouseEvent>) -> Html {
+pub(super) fn outcome(done: &Done, on_close: Callback<MouseEvent>) -> Html {
     let written = &done.written;
     let (shape, class, verdict) = match (done.is_done, done.may_have_acted, written.is_equal) {
         (false, true, _) => (Shape::Half, "half", tr!("write_value.perhaps")),
