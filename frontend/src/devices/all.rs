@@ -40,12 +40,12 @@ pub(super) fn AllPage(props: &AllProps) -> Html {
         <h1>{ tr!("nav.devices") }</h1>
         { stale_note(&plant) }
         <section class="panel">
-            <div class="scroll"><table class="listing" aria-label={tr!("nav.devices")}>
+            <div class="scroll"><table class="listing devices" aria-label={tr!("nav.devices")}>
                 <thead><tr>
                     <th scope="col">{ tr!("device.site") }</th><th scope="col">{ tr!("device.name") }</th>
                     <th scope="col">{ tr!("health.title") }</th><th scope="col">{ tr!("device.path") }</th>
-                    <th scope="col">{ tr!("device.profile") }</th><th scope="col" class="num">{ tr!("load.items") }</th>
-                    <th scope="col" class="num">{ tr!("load.bad") }</th><th scope="col" class="num">{ tr!("load.per_s") }</th>
+                    <th scope="col">{ tr!("device.profile") }</th><th scope="col" class="num">{ tr!("all.items") }</th>
+                    <th scope="col" class="num">{ tr!("all.bad") }</th><th scope="col" class="num">{ tr!("all.per_s") }</th>
                 </tr></thead>
                 <tbody>{ for tree.devices.iter().map(|device| line(&plant, device)) }</tbody>
             </table></div>
