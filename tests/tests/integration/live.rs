@@ -399,6 +399,35 @@ async fn who_may_not_write_gets_no_ticket() {
 }
 
 #[tokio::test]
+async fn a_value_of_another_device_is_never_shown_as_good() {
+    let plc = Service::simulate("127.0.0.1:0", &["--profile", "omron"]).await;
+    let relay = Relay::start().await;
+    let (device, group) = device(&relay.rest, &plc.address, "omron", 100).await;
+    let ids = variables(&relay.rest, &group, &["gsRecipe"]).await;
+    let mut viewer = LiveViewer::connect(relay.address).await;
+    viewer.watch(&[&group]).await;
+    turn(&relay.rest, &group, true).await;
+    let value = |viewer: &LiveViewer, quality: &str| {
+        viewer.values.get(&ids[0]).filter(|value| value["quality"] == quality).cloned()
+    };
+    viewer.until("it is good", PATIENCE, |viewer| value(viewer, "good")).await;
+    // Somewhere else, where nobody may go.
+    let mut there = relay.rest.get(&format!("devices/{device}")).await.body;
+    there["path"] = json!("4,192.0.2.1");
+    assert_eq!(relay.rest.put(&format!("devices/{device}"), &there).await.status, 200);
+    viewer.values.clear();
+    let first = viewer.until("it is said", PATIENCE, |viewer| viewer.values.get(&ids[0]).cloned()).await;
+    assert_ne!(first["quality"], "good", "{first}");
+    let reason = |value: &Value| value["reason"].as_str().is_some_and(|why| why.contains("not on the list"));
+    viewer
+        .until("it says why", PATIENCE, |viewer| {
+            viewer.values.get(&ids[0]).filter(|it| reason(it)).map(|_| ())
+        })
+        .await;
+    relay.stop().await;
+}
+
+#[tokio::test]
 async fn whoever_looks_at_values_with_an_ended_session_sees_no_more() {
     use cipdeck_tests::managed::Managed;
 

@@ -76,6 +76,9 @@ impl Task {
         let before = self.work.replace(Arc::clone(work));
         let is_same_device = before.as_ref().is_some_and(|before| before.plan == work.plan);
         if !is_same_device {
+            if before.is_some() {
+                self.forget_values("the device was changed, and has not been read since");
+            }
             let now = tokio::time::Instant::now();
             (self.poller, self.flight, self.lane, self.rest) = (None, None, None, FIRST_REST);
             (self.health_due, self.rests_until) = (now, now);
@@ -236,8 +239,15 @@ impl Task {
 
     /// Nobody knows yet how this device is asked for values: it has not said what it is.
     fn nothing_is_read(&self, reason: &str) {
-        let (Some(work), None) = (&self.work, &self.poller) else { return };
-        for group in work.groups.iter().filter(|group| group.on) {
+        if self.poller.is_none() {
+            self.forget_values(reason);
+        }
+    }
+
+    /// What is there is no longer what the device has.
+    fn forget_values(&self, reason: &str) {
+        let groups = self.work.iter().flat_map(|work| &work.groups);
+        for group in groups.filter(|group| group.on) {
             self.shared.hub.put_all_points(GroupId(group.id), |point| Point {
                 quality: if point.value.is_some() { Quality::Stale } else { Quality::Bad },
                 reason: Some(reason.to_owned()),
