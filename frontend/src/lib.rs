@@ -54,6 +54,6 @@ pub fn start_devices() {
 fn say_crashes() {
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
-        browser::show_crash(&i18n::filled("crash", &[("place", &place)]));
+        browser::show_crash(&i18n::tr!("crash", place = place));
     }));
 }

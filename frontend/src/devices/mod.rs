@@ -121,9 +121,3 @@ fn body(plant: &Plant, page: Page) -> Html {
         },
     }
 }
-
-/// Whether this document has a text for a key.
-#[cfg(test)]
-pub(crate) fn has_text(key: &str) -> bool {
-    i18n::try_text(key).is_some()
-}

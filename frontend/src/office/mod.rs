@@ -145,17 +145,6 @@ fn not_found() -> Html {
     }
 }
 
-/// A text of the office, for the document that uses its parts.
-pub(crate) fn text(key: &'static str) -> AttrValue {
-    i18n::text(key)
-}
-
-/// Whether the office has a text for a key.
-#[cfg(test)]
-pub(crate) fn has_text(key: &str) -> bool {
-    i18n::try_text(key).is_some()
-}
-
 /// `2026-11-22 10:32:05`: here, of a time in RFC 3339.
 fn when(at: &str) -> String {
     browser::date_and_time(at)

@@ -9,11 +9,15 @@ use yew::prelude::*;
 use self::{record::record, state::ChainState};
 use super::{
     fetch::use_fetched,
-    i18n::{tr, try_text},
+    i18n::tr,
     kit::{Entry, choice, note, waiting},
     query::query,
 };
-use crate::{hooks::use_title, net::rest};
+use crate::{
+    hooks::use_title,
+    i18n::{EVENT, find},
+    net::rest,
+};
 
 /// What is asked for. Typing changes it; the button, or a choice, asks.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -123,7 +127,7 @@ fn events() -> Vec<(AttrValue, AttrValue)> {
 
 /// An event in words; one of a newer relay by its own word.
 fn event_words(word: &str) -> AttrValue {
-    try_text(&format!("event.{word}")).unwrap_or_else(|| word.to_owned().into())
+    find(EVENT, word).map_or_else(|| word.to_owned().into(), AttrValue::Static)
 }
 
 /// As docs/AUDIT.md has them.

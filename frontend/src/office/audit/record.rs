@@ -5,9 +5,9 @@ use serde_json::Value;
 use yew::prelude::*;
 
 use super::event_words;
-use crate::office::{
-    i18n::{tr, try_text},
-    when,
+use crate::{
+    i18n::{MEMBER, find},
+    office::{i18n::tr, when},
 };
 
 /// A line; the chain's own members are shown when somebody asks for them.
@@ -35,7 +35,7 @@ pub(super) fn record(record: &AuditRecord) -> Html {
 }
 
 fn member((name, value): (&String, &Value)) -> Html {
-    let words = try_text(&format!("member.{name}")).unwrap_or_else(|| name.clone().into());
+    let words = find(MEMBER, name).map_or_else(|| name.clone().into(), AttrValue::Static);
     let text = match value {
         Value::String(text) if BYTES.contains(&name.as_str()) => space_hex(text).to_ascii_uppercase(),
         Value::String(text) => text.clone(),

@@ -42,7 +42,7 @@ pub(super) fn run(run: &HistoryRun, blocks: &[Block]) -> Html {
 /// `224/5: The device answered and refused the request.`
 fn failure(run: &HistoryRun) -> String {
     let cause = run.cause.as_deref().unwrap_or_default();
-    let words = i18n::try_text(&format!("cause.{cause}")).unwrap_or_else(|| cause.to_owned());
+    let words = i18n::find(i18n::CAUSE, cause).unwrap_or(cause);
     let acted = match (run.has_acted, run.may_have_acted) {
         (true, _) => tr!("error.has_acted"),
         (false, true) => tr!("error.may_have_acted"),

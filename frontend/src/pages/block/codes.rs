@@ -67,8 +67,8 @@ mod tests {
     fn every_cause_that_we_know_has_a_text_and_something_to_try() {
         let on_the_way = ["refused_by_router", "connection_refused"];
         for key in CauseKind::ALL.iter().map(CauseKind::word).chain(on_the_way) {
-            assert!(crate::i18n::try_text(&format!("cause.{key}")).is_some(), "cause.{key}");
-            assert!(crate::i18n::try_text(&format!("try.{key}")).is_some(), "try.{key}");
+            assert!(crate::i18n::find(crate::i18n::CAUSE, key).is_some(), "cause.{key}");
+            assert!(crate::i18n::find(crate::i18n::TRY, key).is_some(), "try.{key}");
         }
     }
 }

@@ -11,7 +11,7 @@ use yew::prelude::*;
 use super::subject::Subject;
 use crate::{
     hooks::{use_notice, use_workbench},
-    i18n::{tr, try_text},
+    i18n::{PROBLEM, find, tr},
     notice::Notice,
     store::DeckId,
     workbench::Workbench,
@@ -46,9 +46,9 @@ pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
 pub(crate) fn words(problem: &Problem) -> String {
     let code = problem.code.word();
     // The detail of a relay is for people, too; ours is the one that the page translates.
-    match (try_text(&format!("problem.code_{code}")), &problem.code) {
-        (Some(words), ProblemCode::Findings | ProblemCode::NotFound) => words,
-        (Some(words), _) if problem.detail.is_empty() => words,
+    match (find(PROBLEM, &format!("code_{code}")), &problem.code) {
+        (Some(words), ProblemCode::Findings | ProblemCode::NotFound) => words.to_owned(),
+        (Some(words), _) if problem.detail.is_empty() => words.to_owned(),
         (Some(words), _) => format!("{}: {}", words.trim_end_matches('.'), problem.detail),
         (None, _) => format!("{}: {}", problem.title, problem.detail),
     }

@@ -8,7 +8,7 @@ use cipdeck_shared::{
 use yew::prelude::*;
 
 use super::{codes::entries, way::stuck_at};
-use crate::i18n::{tr, try_text};
+use crate::i18n::{CAUSE, TRY, find, tr};
 
 /// Everything known about a failed run of a block with this path.
 pub(super) fn trouble(status: &BlockStatus, path: &str) -> Html {
@@ -22,8 +22,8 @@ pub(super) fn trouble(status: &BlockStatus, path: &str) -> Html {
     };
     let stuck = cause.and_then(|cause| stuck_at(path, cause));
     // A cause of a newer relay has no text here: its own word is better than nothing.
-    let what = try_text(&format!("cause.{key}")).unwrap_or_else(|| key.to_owned());
-    let tries = try_text(&format!("try.{key}"));
+    let what = find(CAUSE, key).unwrap_or(key);
+    let tries = find(TRY, key);
     let hints: Vec<_> = entries.iter().map(|entry| entry.hint).filter(|hint| !hint.is_empty()).collect();
     html! {
         <div class="trouble" data-test="error">

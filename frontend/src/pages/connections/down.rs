@@ -8,7 +8,7 @@ use yew::prelude::*;
 use crate::{
     browser,
     hooks::{use_second, use_targets, use_workbench},
-    i18n::{tr, try_text},
+    i18n::{CAUSE, TRY, find, tr},
     kit::Shape,
     pages::block::age_words,
     route::{Route, link},
@@ -69,8 +69,8 @@ pub(super) fn count(blocks: &[Rc<Row>]) -> AttrValue {
 /// What it means, and what to try.
 pub(super) fn advice(error: &Cause) -> String {
     let word = error.what.word();
-    let text = |kind: &str| try_text(&format!("{kind}.{word}")).unwrap_or_default();
-    format!("{} {} {}", text("cause"), text("try"), error.detail.as_deref().unwrap_or_default())
+    let text = |kind| find(kind, word).unwrap_or_default();
+    format!("{} {} {}", text(CAUSE), text(TRY), error.detail.as_deref().unwrap_or_default())
 }
 
 /// Links to blocks.
