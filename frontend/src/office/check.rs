@@ -29,7 +29,7 @@ pub fn code(text: &str) -> Option<AttrValue> {
 
 /// Something that must not be left empty.
 pub fn needed(text: &str) -> Option<AttrValue> {
-    text.trim().is_empty().then(|| tr!("check.missing"))
+    text.trim().is_empty().then_some(tr!("check.missing"))
 }
 
 /// A number in a range.

@@ -66,11 +66,9 @@ fn line(entry: &WriteEntry) -> Html {
 
 fn result(entry: &WriteEntry) -> Html {
     let (shape, class, words) = match (entry.is_done, entry.is_equal) {
-        (false, _) => (
-            Shape::Cross,
-            "cross",
-            entry.reason.clone().map_or_else(|| tr!("writes.refused"), AttrValue::from),
-        ),
+        (false, _) => {
+            (Shape::Cross, "cross", entry.reason.clone().map_or(tr!("writes.refused"), AttrValue::from))
+        }
         (true, Some(true)) => (Shape::Tick, "tick", tr!("writes.equal")),
         (true, Some(false)) => (Shape::Half, "half", tr!("writes.different")),
         (true, None) => (Shape::Half, "half", tr!("writes.unread")),

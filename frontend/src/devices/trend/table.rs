@@ -7,7 +7,7 @@ use crate::{browser, devices::i18n::tr, kit::short};
 
 /// Line, name, number at the cursor or now, smallest and biggest of what is drawn.
 pub(super) fn legend(drawn: &[Drawn], cursor_ms: Option<f64>) -> Html {
-    let at = cursor_ms.map_or_else(|| tr!("trend.now"), |at| tr!("trend.at", time = browser::clock(at)));
+    let at = cursor_ms.map_or(tr!("trend.now"), |at| tr!("trend.at", time = browser::clock(at)));
     let row = |(place, it): (usize, &Drawn)| {
         let all = || it.points.iter().filter_map(|(_, number)| *number);
         let low = all().reduce(f64::min);

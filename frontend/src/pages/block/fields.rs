@@ -31,7 +31,7 @@ pub(super) fn number_member(subject: &Subject, edit: &Callback<Edit>, field: Fie
         label: member_name(&field),
         text: subject.draft.text(&field).into(),
         meaning: meaning(subject, &field),
-        placeholder: (field == Field::ReqLength).then(|| tr!("field.all")),
+        placeholder: (field == Field::ReqLength).then_some(tr!("field.all")),
         remarks: subject.remarks_of(&field),
         on_text: edit.reform(move |text| Edit::Number(field.clone(), text)),
     })

@@ -32,7 +32,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
     let no_save = subject.no_save();
     let can_save = no_save.is_none() && subject.errors() == 0;
     let can_revert = subject.unsaved && id.stored().is_some();
-    let save_title = no_save.unwrap_or_else(|| tr!("save.title"));
+    let save_title = no_save.unwrap_or(tr!("save.title"));
     html! {
         <header class="head">
             <div class="head-name">

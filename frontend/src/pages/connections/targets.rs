@@ -84,8 +84,8 @@ fn connection(connection: &ConnectionStatus) -> Html {
 
 fn peculiar(status: &TargetStatus) -> [Option<AttrValue>; 3] {
     [
-        status.no_context.then(|| tr!("targets.no_context")),
-        status.own_connection_id.then(|| tr!("targets.own_connection_id")),
+        status.no_context.then_some(tr!("targets.no_context")),
+        status.own_connection_id.then_some(tr!("targets.own_connection_id")),
         (status.dropped > 0).then(|| tr!("targets.dropped", count = status.dropped)),
     ]
 }

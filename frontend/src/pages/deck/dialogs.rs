@@ -96,7 +96,7 @@ fn body(asked: Asked, bench: &Workbench, node: &NodeRef, said: Option<AttrValue>
         Asked::Delete(id) => html! { <p>{ tr!("delete.text", name = name(id)) }</p> },
         Asked::Copy(id) => html! { <>
             <textarea class="input json" rows="16" readonly=true aria-label={tr!("copy.title")} value={json(bench, id)} />
-            <p role="status" class="hint">{ said.unwrap_or_else(|| tr!("copy.hint")) }</p>
+            <p role="status" class="hint">{ said.unwrap_or(tr!("copy.hint")) }</p>
         </> },
         Asked::Paste => html! { <>
             <label for="paste-json">{ tr!("paste.label") }</label>

@@ -91,7 +91,7 @@ fn finding(bench: &Workbench, typed: &str, path: &str) -> Option<AttrValue> {
 }
 
 fn nowhere(bench: &Workbench, target: &Target) -> Option<AttrValue> {
-    (bench.place(Some(target)) == Place::Nowhere).then(|| tr!("first.needs_relay"))
+    (bench.place(Some(target)) == Place::Nowhere).then_some(tr!("first.needs_relay"))
 }
 
 #[cfg(test)]

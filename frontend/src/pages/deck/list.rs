@@ -59,7 +59,7 @@ pub(super) fn BlockList(props: &BlockListProps) -> Html {
         filter.set(event.target_unchecked_into::<HtmlInputElement>().value());
     });
     use_session();
-    let obstacle = (!session::may(Role::may_edit)).then(|| tr!("may.not_edit"));
+    let obstacle = (!session::may(Role::may_edit)).then_some(tr!("may.not_edit"));
     let (locked, none) = (obstacle.is_some(), obstacle.is_some() || props.chosen.is_none());
     let no_copy = props.chosen.is_none();
     let action = |test: &'static str, words: AttrValue, onclick: Callback<MouseEvent>, disabled: bool| {
