@@ -152,7 +152,8 @@ fn measure(reader: Reader, target: SocketAddr, on: usize, effort: Effort) -> Opt
 pub(crate) fn read(reader: Reader, target: SocketAddr, warm_up: u64, measure: u64) -> Reads {
     let (warm_up, measure) = (Duration::from_millis(warm_up), Duration::from_millis(measure));
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("a runtime");
-    runtime.block_on(async {
+    // A task, as the relay has one for each device: what it waits for is woken beside it.
+    let reading = runtime.spawn(async move {
         match reader {
             Reader::Connected | Reader::Unconnected => {
                 ours(target, reader == Reader::Connected, warm_up, measure).await
@@ -160,7 +161,8 @@ pub(crate) fn read(reader: Reader, target: SocketAddr, warm_up: u64, measure: u6
             Reader::Rseip => rseip(target, warm_up, measure).await,
             Reader::Pycomm3 => panic!("pycomm3 is a program of its own"),
         }
-    })
+    });
+    runtime.block_on(reading).expect("it ends well")
 }
 
 /// Counts from the end of the warm-up on.
