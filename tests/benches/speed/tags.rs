@@ -199,11 +199,15 @@ async fn ours(target: SocketAddr, connected: bool, warm_up: Duration, measure: D
     let mut now = PollInstant(0);
     poller.put_group(Group { id: 1, period: Millis(1), on: true, items }, now);
     let (start, mut count) = (Instant::now(), None);
+    // A session ends with the last message that uses it: the one before stays until the next is there.
+    let mut before = None;
     loop {
         while let Some(request) = poller.poll_request(now) {
             let request = MessageRouterRequest::decode(&request.bytes).expect("a request");
             let plan = MessagePlan::tag(&way, request).expect("a message");
-            let answer = client.planned(plan).run().await.expect("it is started");
+            let mut message = client.planned(plan);
+            let answer = message.run().await.expect("it is started");
+            drop(before.replace(message));
             let reply = answer.exchange.response().expect("a reply");
             poller.handle_reply(now, Ok(reply));
             if let Some(Count { requests, .. }) = &mut count {
