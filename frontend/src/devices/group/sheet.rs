@@ -258,6 +258,8 @@ pub(super) fn words(wrong: &[Wrong]) -> AttrValue {
 
 #[cfg(test)]
 mod tests {
+    use cipdeck_shared::config::{Choice, GroupId, Scale, ValueDisplay, VariableConfig, VariableId};
+
     use super::*;
 
     fn read(text: &str) -> Sheet {
@@ -321,14 +323,40 @@ mod tests {
 
     #[test]
     fn what_is_exported_can_be_pasted() {
-        let text = plant::write_csv(&[]);
-        let sheet = read(&text);
+        let variable = |id, config| Variable { id: VariableId(id), revision: 1, group: GroupId(1), config };
+        let mode = VariableConfig {
+            parent: Some(VariableId(2)),
+            kind: "INT".to_owned(),
+            scale: Some(Scale { factor: 0.1, offset: -5.0 }),
+            unit: "°C".to_owned(),
+            digits: Some(1),
+            display: ValueDisplay::Hex,
+            choices: vec![
+                Choice { value: 0, text: "off, cold".to_owned() },
+                Choice { value: 1, text: "on".to_owned() },
+            ],
+            writable: true,
+            min: Some(-0.5),
+            max: Some(99.5),
+            order: 2,
+            ..VariableConfig::new("=mode; \"quoted\"", "mode")
+        };
+        let all = [
+            variable(1, VariableConfig::new("PV", "grHWCs_PV")),
+            variable(2, VariableConfig::new("line", "stLine")),
+            variable(3, mode.clone()),
+        ];
+        let sheet = read(&plant::write_csv(&all)).checked(&[], &Types::default());
         assert!(
             sheet.columns.iter().all(|column| matches!(column, Column::Member(_))),
             "{:?}",
             sheet.columns
         );
-        assert_eq!((sheet.columns.len(), sheet.rows.len()), (plant::COLUMNS.len(), 0));
+        let good = sheet.good();
+        assert_eq!(good.len(), 3, "{:?}", sheet.rows);
+        assert_eq!(good[0].config, all[0].config);
+        let part = good.iter().find(|new| new.parent_address.as_deref() == Some("stLine")).expect("the part");
+        assert_eq!(part.config, VariableConfig { parent: None, ..mode });
     }
 
     #[test]
