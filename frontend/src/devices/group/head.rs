@@ -12,7 +12,7 @@ use crate::{
         answer::problem_note,
         api,
         i18n::tr,
-        live::use_device_status,
+        live::use_plant,
         quality::health_mark,
         route::{Page, link},
     },
@@ -32,7 +32,8 @@ pub(super) struct HeadProps {
 pub(super) fn Head(props: &HeadProps) -> Html {
     let HeadProps { group, device, ask } = props;
     let action = use_action();
-    let status = use_device_status(device.id);
+    let plant = use_plant();
+    let status = plant.status(device.id);
     let (on, may) = (group.config.on, session::may(Role::may_edit));
     let onclick = {
         let (action, group) = (action.clone(), group.clone());
@@ -47,7 +48,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
             <h1>{ &group.config.name }</h1>
             <span class="page-of">
                 { link(Page::Device(device.id), "", html! { &device.config.name }) }
-                { health_mark(status.as_deref(), true, false) }
+                { health_mark(status.as_deref(), plant.is_live(), false) }
             </span>
             <span class="quiet">{ tr!("group.every", ms = group.config.period_ms) }</span>
             <span class="page-do">

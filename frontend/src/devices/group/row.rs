@@ -58,7 +58,7 @@ pub(super) fn VariableRow(props: &RowProps) -> Html {
     let mark = match quality {
         _ if !common.on => Mark::Off,
         None => Mark::Of(Quality::Waiting),
-        Some(_) if !common.live => Mark::Of(Quality::Stale),
+        Some(Quality::Good) if !common.live => Mark::Of(Quality::Stale),
         Some(quality) => Mark::Of(quality),
     };
     let is_old = mark != Mark::Of(Quality::Good);
