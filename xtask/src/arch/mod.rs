@@ -193,7 +193,7 @@ mod tests {
     fn super_does_not_lead_around_the_table() {
         assert_eq!(
             found("config/path.rs", "use super::super::engine::Client;"),
-            ["1: config may import wire, not crate::engine::Client"]
+            ["1: config may import wire, tag::Display, tag::Scale, not crate::engine::Client"]
         );
         assert!(found("config/path.rs", "use super::block::Block;").is_empty());
         assert!(found("config/mod.rs", "mod inline { use super::Block; }").is_empty());
