@@ -297,6 +297,7 @@ async fn a_pulled_cable_is_seen_and_values_come_back_by_themselves() {
     user.see("2 variables: 0 good, 2 stale", PATIENCE).await;
     assert_eq!(user.find("the last value", &value("SP"), PATIENCE).await, "65", "it stays, and is marked");
     user.see("no answer", PATIENCE).await;
+    user.find("why, in words", &part("device-trouble"), PATIENCE).await;
     user.shot("pulled").await;
     drop(plc);
     let _plc = Service::simulate(&address, &OMRON).await;

@@ -1,7 +1,7 @@
 //! The group's name, where it belongs, and whether it is read.
 
 use cipdeck_shared::{
-    api::Role,
+    api::{DeviceStatus, HealthState, Role},
     config::{Device, Group, GroupConfig},
 };
 use yew::prelude::*;
@@ -42,6 +42,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
             action.go(api::change_group(Group { config, ..group.clone() }), |_| {});
         }
     };
+    let trouble = status.as_deref().filter(|_| on && plant.is_live()).and_then(trouble);
     let wish = |asked: Asked| ask.reform(move |_: MouseEvent| asked);
     html! { <>
         <div class="page-head">
@@ -65,6 +66,16 @@ pub(super) fn Head(props: &HeadProps) -> Html {
                 }
             </span>
         </div>
+        if let Some(words) = trouble {
+            <p class="finding error" role="status" data-test="device-trouble">{ words.to_owned() }</p>
+        }
         { problem_note(action.problem().as_ref()) }
     </> }
+}
+
+/// Why there are no values, in words; nothing while the device is well.
+fn trouble(status: &DeviceStatus) -> Option<&str> {
+    let health = &status.health;
+    matches!(health.state, HealthState::Lost | HealthState::Denied | HealthState::Fault)
+        .then_some(health.words.as_str())
 }
