@@ -4,9 +4,9 @@
 //! | --- | --- |
 //! | [`route`] | the addresses of its pages |
 //! | [`live`] | the connection to the relay, the tree and the newest values |
-//! | [`tree`] | site, device, group |
-//! | [`device`] | a device: its form, its health, its load, its writes, what it lists of itself |
-//! | [`group`] | a group: its variables as a live table, and everything that is done with them |
+//! | `tree` | site, device, group |
+//! | `device` | a device: its form, its health, its load, its writes, what it lists of itself |
+//! | `group` | a group: its variables as a live table, and everything that is done with them |
 //! | [`trend`] | numbers over time |
 //! | [`write`] | changing a value: old and new, the ticket, the result |
 //! | [`api`] | what is asked of the relay |

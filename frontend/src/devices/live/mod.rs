@@ -2,11 +2,11 @@
 //!
 //! | module | job |
 //! | --- | --- |
-//! | [`heard`] | its messages |
-//! | [`values`] | the newest value of each variable |
-//! | [`tree`] | devices and groups in their order |
-//! | [`plant`] | the tree, what the devices say of themselves, and the connection to the relay |
-//! | [`hooks`] | how components learn of it |
+//! | `heard` | its messages |
+//! | `values` | the newest value of each variable |
+//! | `tree` | devices and groups in their order |
+//! | `plant` | the tree, what the devices say of themselves, and the connection to the relay |
+//! | `hooks` | how components learn of it |
 
 mod heard;
 mod hooks;
