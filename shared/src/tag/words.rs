@@ -8,6 +8,8 @@ use crate::wire::GeneralStatus;
 
 /// What a general status and the first word behind it mean: `0xFF, extended 0x2107: Tag type in request differs …`.
 pub fn refusal(status: GeneralStatus, extended: Option<u16>) -> String {
+    // 0 says nothing more: cpppo has it behind each status, and the table's "out of memory" would mislead.
+    let extended = extended.filter(|word| *word != 0);
     let mut text = alloc::format!("{status}");
     if let Some(entry) = table::general_status(status) {
         // Writing to a String never fails.
@@ -58,4 +60,28 @@ pub const fn is_about_the_tag(status: GeneralStatus) -> bool {
             | GeneralStatus::NotEnoughData
             | GeneralStatus::TooMuchData
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_says_what_it_is_about() {
+        for (status, extended, words) in [
+            (
+                0x04,
+                None,
+                "0x04 Path segment error: the device has no tag of this name, or does not show it to others",
+            ),
+            (0x05, Some(0), "there is no such tag or element"),
+            (0xFF, Some(0x2107), "extended 0x2107: Tag type in request differs from tag data type"),
+            (0x20, Some(0x8022), "extended 0x8022: Data type differs from the variable"),
+            (0x20, Some(0x8FFF), "extended 0x8fff"),
+        ] {
+            let said = refusal(GeneralStatus(status), extended);
+            assert!(said.contains(words), "{said}");
+        }
+        assert!(!refusal(GeneralStatus(5), Some(0)).contains("memory"));
+    }
 }
