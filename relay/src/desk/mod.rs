@@ -11,7 +11,7 @@ use cipdeck_shared::tag::{Dialect, TagName, Type};
 use cipdeck_shared::wire::MessageRouterRequest;
 
 pub(crate) use self::message::{one_bit, refused, whole};
-pub(crate) use self::reply::{Lost, identity, identity_request, reply};
+pub(crate) use self::reply::{Lost, Why, identity, identity_request, reply};
 use crate::permit::Order;
 use crate::runner::{Clock, Lane};
 
@@ -51,7 +51,7 @@ impl Desk {
         let mut desk = Self { lane, limits: limits(&way), way, clock, order };
         if desk.way.profile == Profile::Auto {
             let way = TagWay { connected: false, ..desk.way.clone() };
-            let request = identity_request().map_err(|error| lost(error.to_string()))?;
+            let request = identity_request().map_err(|error| Lost::silent(error.to_string()))?;
             let reply = desk.send(&way, request).await?;
             desk.way.profile = identity(&reply).map_or(Profile::Generic, |identity| {
                 Profile::of_identity(identity.vendor, identity.device_type, identity.name.bytes())
@@ -79,7 +79,7 @@ impl Desk {
         poller.put_group(Group { id: 0, period: ONCE, on: true, items }, self.clock.now());
         while let Some(request) = poller.poll_request(self.clock.now()) {
             let reply = match self.ask(&request.bytes).await {
-                Err(lost) if lost.is_denied => return Err(lost),
+                Err(lost) if lost.why == Why::Denied => return Err(lost),
                 reply => reply,
             };
             poller.handle_reply(self.clock.now(), reply.as_deref().map_err(Lost::failure));
@@ -107,18 +107,15 @@ impl Desk {
 
     /// One message that reads: the message router reply, refusals included.
     pub(crate) async fn ask(&mut self, request: &[u8]) -> Result<Vec<u8>, Lost> {
-        let request = MessageRouterRequest::decode(request).map_err(|error| lost(error.to_string()))?;
+        let request =
+            MessageRouterRequest::decode(request).map_err(|error| Lost::silent(error.to_string()))?;
         let way = self.way.clone();
         self.send(&way, request).await
     }
 
     async fn send(&mut self, way: &TagWay, request: MessageRouterRequest) -> Result<Vec<u8>, Lost> {
-        let message = MessagePlan::tag(way, request).map_err(|error| lost(error.to_string()))?;
+        let message = MessagePlan::tag(way, request).map_err(|error| Lost::silent(error.to_string()))?;
         let ended = self.lane.send(message, self.order.clone()).await;
         reply(&ended).map(<[u8]>::to_vec)
     }
-}
-
-fn lost(reason: String) -> Lost {
-    Lost { is_denied: false, reason }
 }

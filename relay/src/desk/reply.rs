@@ -12,24 +12,44 @@ use crate::runner::{Ended, Refused};
 /// Why a device did not answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Lost {
-    /// The relay must not ask it.
-    pub(crate) is_denied: bool,
+    /// What became of the message.
+    pub(crate) why: Why,
     /// In words.
     pub(crate) reason: String,
+}
+
+/// What became of a message that brought no reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Why {
+    /// It was not sent: the relay must not ask this device.
+    Denied,
+    /// No answer came, or none that could be used.
+    Silent,
+    /// The device answered that it takes no such message: an encapsulation status.
+    NotTaken,
 }
 
 impl Lost {
     /// For whoever asks one question after the other.
     pub(crate) fn failure(&self) -> Failure {
-        Failure::Lost { reason: self.reason.clone() }
+        let reason = self.reason.clone();
+        match self.why {
+            Why::Denied | Why::Silent => Failure::Lost { reason },
+            Why::NotTaken => Failure::NotTaken { reason },
+        }
+    }
+
+    /// Without an answer, for a reason of our own.
+    pub(crate) const fn silent(reason: String) -> Self {
+        Self { why: Why::Silent, reason }
     }
 
     /// For somebody who has asked for an answer of the device.
     pub(crate) fn into_error(self) -> ApiError {
-        if self.is_denied {
-            ApiError::NotPermitted(self.reason)
-        } else {
-            ApiError::Conflict(format!("the device does not answer: {}", self.reason))
+        match self.why {
+            Why::Denied => ApiError::NotPermitted(self.reason),
+            Why::Silent => ApiError::Conflict(format!("the device does not answer: {}", self.reason)),
+            Why::NotTaken => ApiError::Conflict(format!("the device refuses: {}", self.reason)),
         }
     }
 }
@@ -45,7 +65,8 @@ pub(crate) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
         Ok(ended) => ended,
         Err(refused) => {
             let is_denied = matches!(refused, Refused::NotPermitted(_));
-            return Err(Lost { is_denied, reason: refused.to_string() });
+            let why = if is_denied { Why::Denied } else { Why::Silent };
+            return Err(Lost { why, reason: refused.to_string() });
         }
     };
     let cause = ended.view.cause.as_ref();
@@ -53,7 +74,11 @@ pub(crate) fn reply(ended: &Result<Ended, Refused>) -> Result<&[u8], Lost> {
     match ended.exchange.response().filter(|_| is_answer) {
         Some(reply) => Ok(reply),
         None => Err(Lost {
-            is_denied: cause.is_some_and(|cause| cause.what == CauseKind::NotPermitted),
+            why: match cause.map(|cause| &cause.what) {
+                Some(CauseKind::NotPermitted) => Why::Denied,
+                Some(CauseKind::EncapsulationStatus) => Why::NotTaken,
+                _ => Why::Silent,
+            },
             reason: cause.map_or_else(|| "there was no answer".to_owned(), in_words),
         }),
     }

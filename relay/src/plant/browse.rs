@@ -183,12 +183,12 @@ impl Inner {
             found.requests = browse.requests().into();
             if found.symbols.len() > MAX_SYMBOLS {
                 let reason = format!("there are more than {MAX_SYMBOLS} names");
-                return Err(Lost { is_denied: false, reason });
+                return Err(Lost::silent(reason));
             }
         }
         match browse.error() {
             None => Ok(()),
-            Some(reason) => Err(Lost { is_denied: false, reason: reason.to_owned() }),
+            Some(reason) => Err(Lost::silent(reason.to_owned())),
         }
     }
 }

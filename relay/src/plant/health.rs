@@ -4,7 +4,7 @@ use cipdeck_shared::api::{DeviceHealth, DeviceIdentity, HealthState};
 use cipdeck_shared::table::{self, Entry};
 use cipdeck_shared::wire::IdentityAttributes;
 
-use crate::desk::Lost;
+use crate::desk::{Lost, Why};
 use crate::wall_clock;
 
 /// What everybody sees of a device that has said who it is.
@@ -26,7 +26,7 @@ pub(super) fn good(identity: &IdentityAttributes) -> DeviceHealth {
 
 /// What everybody sees of a device that does not answer; what it said before stays.
 pub(super) fn lost(before: &DeviceHealth, lost: &Lost) -> DeviceHealth {
-    let state = if lost.is_denied { HealthState::Denied } else { HealthState::Lost };
+    let state = if lost.why == Why::Denied { HealthState::Denied } else { HealthState::Lost };
     DeviceHealth { state, words: lost.reason.clone(), status_word: None, ..before.clone() }
 }
 

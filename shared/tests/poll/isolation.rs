@@ -1,6 +1,7 @@
 //! A bad tag does not harm the others.
 
-use cipdeck_shared::engine::poll::{Quality, Reason};
+use cipdeck_shared::engine::poll::{DeviceLimits, Failure, Group, Item, Poller, Quality, Reason};
+use cipdeck_shared::engine::time::{Instant, Millis};
 use cipdeck_shared::tag::Dialect;
 use cipdeck_shared::wire::GeneralStatus;
 
@@ -117,4 +118,24 @@ fn a_device_that_is_busy_is_asked_again_in_the_next_period() {
     owner.device.refuses.clear();
     owner.run(100);
     owner.all_good(&[(10, "1"), (11, "2")]);
+}
+
+#[test]
+fn a_message_that_the_device_does_not_take_is_about_its_tag_alone() {
+    let limits = DeviceLimits { packs: false, ..DeviceLimits::of(Dialect::Logix, false) };
+    let mut poller = Poller::new(limits);
+    let item = |id, name: &str| Item { id, name: name.parse().unwrap(), kind: None };
+    let items = vec![item(1, "missing"), item(2, "there")];
+    poller.put_group(Group { id: 1, period: Millis(1_000), on: true, items }, Instant(0));
+    assert!(poller.poll_request(Instant(0)).is_some());
+    poller.handle_reply(Instant(1), Err(Failure::NotTaken { reason: "status 0x08".into() }));
+    assert!(poller.poll_request(Instant(2)).is_some(), "the other one is read in the same cycle");
+    poller.handle_reply(Instant(3), Ok(&[0xCC, 0, 0, 0, 0xC3, 0, 7, 0]));
+    let missing = poller.reading(1).unwrap();
+    assert_eq!(
+        (missing.quality, missing.reason.as_ref().unwrap().text().as_str()),
+        (Quality::Bad, "status 0x08")
+    );
+    let there = poller.reading(2).unwrap();
+    assert_eq!((there.quality, there.value.as_ref().unwrap().to_string().as_str()), (Quality::Good, "7"));
 }

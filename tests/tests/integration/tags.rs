@@ -121,6 +121,13 @@ async fn a_server_that_nobody_here_wrote_tells_its_tags_and_takes_values() {
         assert_eq!((written.code, &written.json()["value"]), (0, &read_as), "{written:?}");
     }
     assert_eq!(values(&read(&path, &["Arr[6]=INT[3]"]).await), [json!([0, 77, 0])]);
+    // It refuses a message by itself with an encapsulation status, and a part of a packet with a CIP status.
+    for tags in [&["nowhere"][..], &["TAG1", "nowhere"]] {
+        let missing = read(&path, tags).await;
+        assert_eq!(missing.code, 3, "{missing:?}");
+    }
+    let other = cipdeck(&["write", &path, "TAG1=REAL", "1.5"]).await;
+    assert_eq!((other.code, other.stderr.contains("0x2107")), (3, true), "{other:?}");
 }
 
 #[tokio::test]

@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use cipdeck_shared::api::{DeviceStatus, HealthState, Quality};
 use cipdeck_shared::config::{DeviceId, GroupId, Profile};
-use cipdeck_shared::engine::poll::{Failure, Poller};
+use cipdeck_shared::engine::poll::Poller;
 use cipdeck_shared::plan::{MessagePlan, TagWay};
 use cipdeck_shared::wire::{MessageRouterRequest, TooLong};
 
 use super::flight::Flight;
 use super::{Shared, Work, load, point, way};
 use crate::actor::Actor;
-use crate::desk::{self, Lost};
+use crate::desk::{self, Lost, Why};
 use crate::permit::Order;
 use crate::plant::health;
 use crate::plant::point::Point;
@@ -159,7 +159,7 @@ impl Task {
             .and_then(|message| MessagePlan::tag(&way, message).map_err(|error| error.to_string()));
         match message {
             Ok(message) => self.fly(&work.name, false, Ok(message)),
-            Err(reason) => self.answer(Err(Lost { is_denied: false, reason })),
+            Err(reason) => self.answer(Err(Lost::silent(reason))),
         }
     }
 
@@ -182,7 +182,9 @@ impl Task {
         let is_health = self.flight.take().is_some_and(|flight| flight.is_health);
         self.lane = self.is_on().then_some(lane);
         let reply = desk::reply(ended);
-        if let Err(lost) = &reply {
+        if let Err(lost) = &reply
+            && lost.why != Why::NotTaken
+        {
             self.rests_until = tokio::time::Instant::now() + self.rest;
             self.rest = (self.rest * 2).min(LONGEST_REST);
             if is_health {
@@ -210,7 +212,7 @@ impl Task {
     fn answer(&mut self, reply: Result<&[u8], Lost>) {
         let now = self.shared.clock.now();
         if let Some(poller) = &mut self.poller {
-            poller.handle_reply(now, reply.map_err(|lost| Failure::Lost { reason: lost.reason }));
+            poller.handle_reply(now, reply.map_err(|lost| lost.failure()));
         }
     }
 

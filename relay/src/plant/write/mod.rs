@@ -18,7 +18,7 @@ use super::work::in_words;
 use super::{Inner, Plant};
 use crate::actor::Actor;
 use crate::audit::Event;
-use crate::desk::{self, Desk, Lost};
+use crate::desk::{self, Desk, Lost, Why};
 use crate::error::ApiError;
 use crate::permit::{Confirmed, GOOD_FOR, Offer, Order, record};
 use crate::runner::{Refused, lock};
@@ -164,7 +164,7 @@ impl Inner {
         let ended = Ok(ended);
         let refused = match desk::reply(&ended) {
             // At the last moment.
-            Err(Lost { is_denied: true, reason }) => return Err(ApiError::NotPermitted(reason)),
+            Err(Lost { why: Why::Denied, reason }) => return Err(ApiError::NotPermitted(reason)),
             Err(lost) => Some(lost.reason),
             Ok(reply) => desk::refused(reply),
         };

@@ -151,7 +151,7 @@ impl Browse {
             Err(Failure::Refused { status, words }) => {
                 self.take(&Answer { status, word: words.first().copied(), data: &[] })
             }
-            Err(Failure::Lost { reason }) => Err(reason),
+            Err(Failure::Lost { reason } | Failure::NotTaken { reason }) => Err(reason),
         };
         match step {
             Ok(Step::More) => {}

@@ -48,6 +48,7 @@ impl Poller {
             Ok(Err(error)) => self.malformed(&flight, &error.to_string(), now),
             Err(Failure::Refused { status, words }) => self.answered(&flight, (status, &words), &[], now),
             Err(Failure::Lost { reason }) => self.lost(reason, &flight, now),
+            Err(Failure::NotTaken { reason }) => self.malformed(&flight, &reason, now),
         }
         self.end_cycle(now);
     }

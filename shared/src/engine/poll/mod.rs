@@ -67,6 +67,12 @@ pub enum Failure {
         /// What the transport says.
         reason: String,
     },
+    /// The device answered that it takes no such message, without a reply: an encapsulation status. cpppo says so of a
+    /// tag that it has not. In words.
+    NotTaken {
+        /// What the device said.
+        reason: String,
+    },
 }
 
 /// Reads the variables of one device.
