@@ -21,6 +21,7 @@ mod error;
 mod history;
 mod http;
 mod hub;
+mod line;
 mod listen;
 mod live;
 mod metrics;

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
+use axum::extract::ws::Message;
 use cipdeck_shared::api::{LIVE_PROTOCOL, LiveClientMessage, LiveServerMessage};
 use cipdeck_shared::config::GroupId;
-use futures_util::{Sink, SinkExt, Stream, StreamExt};
-use tokio::time::{Instant, sleep_until, timeout};
+use futures_util::{Sink, Stream, StreamExt};
+use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 
 use crate::actor::Actor;
+use crate::line::{End, Line};
 use crate::permit::Policy;
 use crate::plant::{Plant, Seen};
 
@@ -19,12 +20,6 @@ const PAUSE: Duration = Duration::from_millis(100);
 
 /// Least time between two messages with statuses.
 const STATUS_PAUSE: Duration = Duration::from_millis(500);
-
-/// A viewer that takes nothing for so long is gone.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// The close code for somebody whose session has ended, from the range that is free for applications.
-const SIGNED_OUT: u16 = 4401;
 
 /// Groups that one viewer may watch at once.
 const MAX_WATCHED: usize = 64;
@@ -50,17 +45,17 @@ where
 {
     let Seat { actor, plant, policy, stop } = seat;
     let (mut version, mut rules) = (plant.hub().watch(), policy.watch());
-    let mut viewer = Viewer { sink, seen: Seen::default() };
+    let mut viewer = Viewer { line: Line::new(sink), seen: Seen::default() };
     let (mut next, mut next_status, mut is_behind) = (Instant::now(), Instant::now(), true);
     let mut end = viewer.hello(&policy).await;
     while let Ok(()) = end {
         end = tokio::select! {
             // Somebody who is locked out hears and sees nothing more, however much there is to say.
             biased;
-            () = stop.cancelled() => Err(End::Close(close_code::AWAY, "the relay stops")),
-            () = actor.gone() => Err(End::Close(SIGNED_OUT, "the session has ended: sign in again")),
+            () = stop.cancelled() => Err(End::STOPPING),
+            () = actor.gone() => Err(End::SIGNED_OUT),
             changed = rules.changed() => match changed {
-                Ok(()) => viewer.say(&LiveServerMessage::Access(policy.write_state())).await,
+                Ok(()) => viewer.line.say(&LiveServerMessage::Access(policy.write_state())).await,
                 Err(_) => Err(End::Gone),
             },
             frame = stream.next() => match frame {
@@ -71,7 +66,7 @@ where
                         is_behind = true;
                         Ok(())
                     }
-                    Err(Wrong::Message(detail)) => viewer.say(&LiveServerMessage::Problem { detail }).await,
+                    Err(Wrong::Message(detail)) => viewer.line.say(&LiveServerMessage::Problem { detail }).await,
                     Err(Wrong::End(end)) => Err(end),
                 },
                 Some(Err(_)) | None => Err(End::Gone),
@@ -97,18 +92,9 @@ where
             }
         };
     }
-    if let Err(End::Close(code, reason)) = end {
-        viewer.close(code, reason, stream).await;
+    if let Err(end) = end {
+        viewer.line.close(end, stream).await;
     }
-}
-
-/// Why a viewer is not served any longer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum End {
-    /// We close.
-    Close(u16, &'static str),
-    /// It left, or the connection is broken.
-    Gone,
 }
 
 enum Wrong {
@@ -139,71 +125,40 @@ fn read(frame: Message) -> Result<Option<Vec<GroupId>>, Wrong> {
 }
 
 struct Viewer<S> {
-    sink: S,
+    line: Line<S>,
     seen: Seen,
 }
 
 impl<S: Sink<Message> + Unpin> Viewer<S> {
     async fn hello(&mut self, policy: &Policy) -> Result<(), End> {
         let relay = env!("CARGO_PKG_VERSION").to_owned();
-        self.say(&LiveServerMessage::Hello { protocol: LIVE_PROTOCOL, relay }).await?;
-        self.say(&LiveServerMessage::Access(policy.write_state())).await
+        self.line.say(&LiveServerMessage::Hello { protocol: LIVE_PROTOCOL, relay }).await?;
+        self.line.say(&LiveServerMessage::Access(policy.write_state())).await
     }
 
     /// What this viewer has not seen yet.
     async fn news(&mut self, plant: &Plant) -> Result<(), End> {
         let news = plant.hub().news(&mut self.seen);
         if news.tree {
-            self.say(&LiveServerMessage::Tree(plant.tree())).await?;
+            self.line.say(&LiveServerMessage::Tree(plant.tree())).await?;
         }
         for group in news.variables {
-            self.say(&LiveServerMessage::Variables { group }).await?;
+            self.line.say(&LiveServerMessage::Variables { group }).await?;
         }
         for values in news.values {
-            self.say(&LiveServerMessage::Values { group: values.group, values: values.values }).await?;
+            self.line.say(&LiveServerMessage::Values { group: values.group, values: values.values }).await?;
         }
         Ok(())
     }
 
     async fn statuses(&mut self, plant: &Plant) -> Result<(), End> {
         let devices = plant.hub().statuses(&mut self.seen);
-        if devices.is_empty() { Ok(()) } else { self.say(&LiveServerMessage::Status { devices }).await }
+        if devices.is_empty() { Ok(()) } else { self.line.say(&LiveServerMessage::Status { devices }).await }
     }
 
     /// Whether there are statuses that it has not seen.
     fn waits(&self, plant: &Plant) -> bool {
         plant.hub().has_statuses(&self.seen)
-    }
-
-    async fn say(&mut self, message: &LiveServerMessage) -> Result<(), End> {
-        // Our messages have string keys only, which is all that could fail.
-        let text = serde_json::to_string(message).map_err(|_| End::Gone)?;
-        self.send(Message::Text(text.into())).await
-    }
-
-    async fn send(&mut self, frame: Message) -> Result<(), End> {
-        match timeout(PATIENCE, self.sink.send(frame)).await {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) => Err(End::Gone),
-            Err(_) => {
-                tracing::info!("a viewer takes no messages any more");
-                Err(End::Gone)
-            }
-        }
-    }
-
-    /// Says why, and gives the viewer a moment to answer, so that it hears it.
-    async fn close<E>(
-        &mut self,
-        code: u16,
-        reason: &'static str,
-        mut stream: impl Stream<Item = Result<Message, E>> + Unpin,
-    ) {
-        let frame = CloseFrame { code, reason: Utf8Bytes::from_static(reason) };
-        if self.send(Message::Close(Some(frame))).await.is_ok() {
-            let answered = async { while let Some(Ok(_)) = stream.next().await {} };
-            let _ = timeout(Duration::from_secs(1), answered).await;
-        }
     }
 }
 

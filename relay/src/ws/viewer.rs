@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
+use axum::extract::ws::{Message, close_code};
 use cipdeck_shared::api::{PROTOCOL_VERSION, ServerMessage};
-use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use futures_util::{Sink, Stream, StreamExt};
 use tokio::task::JoinSet;
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 
 use super::{MAX_MESSAGE, command};
@@ -15,17 +15,12 @@ use crate::actor::Actor;
 use crate::blocks::Blocks;
 use crate::error::ApiError;
 use crate::hub::{Cursor, Update};
+use crate::line::{End, Line};
 use crate::metrics::Metrics;
 use crate::permit::Policy;
 
 /// Least time between two messages with changes.
 const PAUSE: Duration = Duration::from_millis(50);
-
-/// A viewer that takes nothing for so long is gone.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// The close code for somebody whose session has ended, from the range that is free for applications.
-const SIGNED_OUT: u16 = 4401;
 
 /// Commands of one viewer that may be under way at once.
 const MAX_COMMANDS: usize = 256;
@@ -56,18 +51,18 @@ where
     let (mut commands, mut next, mut is_behind) = (JoinSet::new(), Instant::now(), true);
     let hello =
         ServerMessage::Hello { protocol: PROTOCOL_VERSION, relay: env!("CARGO_PKG_VERSION").to_owned() };
-    let mut end = viewer.say(&hello).await;
+    let mut end = viewer.line.say(&hello).await;
     if end.is_ok() {
-        end = viewer.say(&ServerMessage::Access(policy.write_state())).await;
+        end = viewer.line.say(&ServerMessage::Access(policy.write_state())).await;
     }
     while let Ok(()) = end {
         end = tokio::select! {
             // Somebody who is locked out hears and sees nothing more, however much there is to say.
             biased;
-            () = stop.cancelled() => Err(End::Close(close_code::AWAY, "the relay stops")),
-            () = actor.gone() => Err(End::Close(SIGNED_OUT, "the session has ended: sign in again")),
+            () = stop.cancelled() => Err(End::STOPPING),
+            () = actor.gone() => Err(End::SIGNED_OUT),
             changed = rules.changed() => match changed {
-                Ok(()) => viewer.say(&ServerMessage::Access(policy.write_state())).await,
+                Ok(()) => viewer.line.say(&ServerMessage::Access(policy.write_state())).await,
                 Err(_) => Err(End::Gone),
             },
             frame = stream.next() => match frame {
@@ -78,15 +73,15 @@ where
                         commands.spawn(command::carry_out(message, actor.clone(), blocks.clone()));
                         Ok(())
                     }
-                    Ok(Some(message)) => viewer.say(&too_many(&message)).await,
-                    Err(Wrong::Answer(answer)) => viewer.say(&answer).await,
+                    Ok(Some(message)) => viewer.line.say(&too_many(&message)).await,
+                    Err(Wrong::Answer(answer)) => viewer.line.say(&answer).await,
                     Err(Wrong::End(end)) => Err(end),
                 },
                 Some(Err(error)) if is_too_long(&error) => Err(TOO_LONG),
                 Some(Err(_)) | None => Err(End::Gone),
             },
             Some(answer) = commands.join_next() => match answer {
-                Ok(answer) => viewer.say(&answer).await,
+                Ok(answer) => viewer.line.say(&answer).await,
                 // It panicked: the log has it, and the viewer's command stays without an answer.
                 Err(_) => Ok(()),
             },
@@ -102,18 +97,9 @@ where
             }
         };
     }
-    if let Err(End::Close(code, reason)) = end {
-        viewer.close(code, reason, stream).await;
+    if let Err(end) = end {
+        viewer.line.close(end, stream).await;
     }
-}
-
-/// Why a viewer is not served any longer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum End {
-    /// We close.
-    Close(u16, &'static str),
-    /// It left, or the connection is broken.
-    Gone,
 }
 
 const TOO_LONG: End = End::Close(close_code::SIZE, "a message has at most 64 KiB");
@@ -141,14 +127,14 @@ fn too_many(message: &cipdeck_shared::api::ClientMessage) -> ServerMessage {
 }
 
 struct Viewer<S> {
-    sink: S,
+    line: Line<S>,
     cursor: Cursor,
     seq: u64,
 }
 
 impl<S: Sink<Message> + Unpin> Viewer<S> {
     fn new(sink: S) -> Self {
-        Self { sink, cursor: Cursor::default(), seq: 0 }
+        Self { line: Line::new(sink), cursor: Cursor::default(), seq: 0 }
     }
 
     /// What this viewer has not seen yet.
@@ -165,38 +151,7 @@ impl<S: Sink<Message> + Unpin> Viewer<S> {
         } else {
             ServerMessage::Changes { seq, statuses, blocks, removed, targets, targets_removed }
         };
-        self.say(&message).await
-    }
-
-    async fn say(&mut self, message: &ServerMessage) -> Result<(), End> {
-        // Our messages have string keys only, which is all that could fail.
-        let text = serde_json::to_string(message).map_err(|_| End::Gone)?;
-        self.send(Message::Text(text.into())).await
-    }
-
-    async fn send(&mut self, frame: Message) -> Result<(), End> {
-        match timeout(PATIENCE, self.sink.send(frame)).await {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) => Err(End::Gone),
-            Err(_) => {
-                tracing::info!("a viewer takes no messages any more");
-                Err(End::Gone)
-            }
-        }
-    }
-
-    /// Says why, and gives the viewer a moment to answer, so that it hears it.
-    async fn close<E>(
-        &mut self,
-        code: u16,
-        reason: &'static str,
-        mut stream: impl Stream<Item = Result<Message, E>> + Unpin,
-    ) {
-        let frame = CloseFrame { code, reason: Utf8Bytes::from_static(reason) };
-        if self.send(Message::Close(Some(frame))).await.is_ok() {
-            let answered = async { while let Some(Ok(_)) = stream.next().await {} };
-            let _ = timeout(Duration::from_secs(1), answered).await;
-        }
+        self.line.say(&message).await
     }
 }
 

@@ -5,6 +5,7 @@ use cipdeck_shared::config::{BlockId, MsgCipGeneric};
 use futures_util::stream;
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
+use tokio::time::timeout;
 use tokio_util::sync::PollSender;
 
 use super::*;
