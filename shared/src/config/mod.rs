@@ -12,6 +12,7 @@ mod hex;
 mod msg_cip_generic;
 mod number;
 mod plant_id;
+mod plc_address;
 mod profile;
 mod target_path;
 mod variable;
@@ -27,6 +28,10 @@ pub use self::msg_cip_generic::{
 };
 pub use self::number::{NumberError, read_number};
 pub use self::plant_id::{BadId, DeviceId, GroupId, VariableId};
+pub use self::plc_address::{
+    AddressDevice, AddressError, AddressErrorKind, AddressFunction, AddressMode, AddressPart, Needed,
+    PlcAddress, Xway, device_target,
+};
 pub use self::profile::Profile;
 pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};
 pub use self::variable::{

@@ -14,7 +14,7 @@ pub const MAX_PATH: usize = 80;
 const ETHERNET: &str = "4";
 
 /// TCP port of explicit messages when the path names none.
-const DEFAULT_TCP_PORT: u16 = 44818;
+pub(super) const DEFAULT_TCP_PORT: u16 = 44818;
 
 /// Hops of the controller's own `Path`. 2080-RM001D p. 182.
 pub const CONTROLLER_HOPS: usize = 2;
