@@ -21,6 +21,7 @@
 extern crate alloc;
 
 pub mod api;
+pub mod code;
 pub mod config;
 pub mod dissect;
 pub mod engine;

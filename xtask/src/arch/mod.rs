@@ -31,6 +31,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     ("plan", &["config", "wire", "table", "tag"]),
+    ("code", &["config", "plan", "wire", "table", "tag"]),
     (
         "engine",
         &["wire", "plan", "tag", "config::BlockId", "config::Channel", "config::Profile", "config::Target"],

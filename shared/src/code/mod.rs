@@ -1,0 +1,163 @@
+//! A block as the code of a controller or a program, and the way back.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`Dialect`] | which languages there are, and which kind of block each tells |
+//! | [`convert()`] | a block of one kind → a block of another, with all that changed |
+//! | [`export()`] | a block → text |
+//! | [`import()`] | text → blocks, and what of it is not understood, line by line |
+//! | [`highlight()`] | text → where its keywords, comments, numbers, texts and names are |
+//!
+//! Everything is told: what a dialect cannot say is a [`Change`] and stands as a comment in the text; what an import
+//! does not understand is a [`Remark`] with its line. Comments carry nothing that an import would read.
+
+mod aside;
+mod ccw_st;
+mod change;
+mod cli;
+mod control_expert;
+mod convert;
+mod dialect;
+mod header;
+mod hex;
+mod ink;
+mod json;
+mod l5x;
+#[allow(dead_code, reason = "the dialects will")]
+mod name;
+mod parameters;
+mod pycomm3;
+mod recognise;
+mod remark;
+mod rust;
+mod sysmac_st;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+pub use self::aside::{BlockConfig, SendReq};
+pub use self::change::{Change, Grade, Why};
+pub use self::convert::{Converted, convert};
+pub use self::dialect::{Dialect, Kind, Language, UnknownDialect};
+pub use self::ink::{Ink, highlight};
+pub use self::remark::{Remark, RemarkKind};
+
+/// Bytes of text that are imported at once.
+pub const MAX_TEXT: usize = 1024 * 1024;
+
+/// Messages that are imported at once.
+pub const MAX_BLOCKS: usize = 1000;
+
+/// How an export is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Structured Text or Instruction List; for Control Expert only.
+    pub language: Language,
+}
+
+/// An exported block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Code {
+    /// What is copied into the editor.
+    pub text: String,
+    /// Everything that the text does not say as the block does. Empty: it says all of it.
+    pub changes: Vec<Change>,
+}
+
+impl Code {
+    /// What is adjusted, lost, or sent otherwise.
+    pub fn losses(&self) -> impl Iterator<Item = &Change> {
+        self.changes.iter().filter(|change| change.is_loss())
+    }
+}
+
+/// What was found in a text.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// The messages, in the order of the text.
+    pub blocks: Vec<Found>,
+    /// What belongs to no message.
+    pub remarks: Vec<Remark>,
+}
+
+/// A message in a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The block. It may have findings: what the text says is kept, also if it is wrong.
+    pub config: BlockConfig,
+    /// How it was written. A table of parameters is `ccw-st`, whose names it uses.
+    pub dialect: Dialect,
+    /// Its lines, counted from 1; the end is not one of them.
+    pub lines: Range<usize>,
+    /// What is to be said about it.
+    pub remarks: Vec<Remark>,
+}
+
+/// Writes a block as code. It is converted to the kind of the dialect first.
+pub fn export(block: &BlockConfig, to: Dialect, options: &Options) -> Code {
+    let Converted { config, mut changes } = convert(block, to.kind_for(block));
+    let Code { text, changes: further } = match to {
+        Dialect::Json => json::export(&config),
+        Dialect::CcwSt => ccw_st::export(&config),
+        Dialect::L5x => l5x::export(&config),
+        Dialect::SendReqEtc100 | Dialect::SendReqEtc101 | Dialect::DataExch => {
+            control_expert::export(&config, options.language)
+        }
+        Dialect::SysmacSt => sysmac_st::export(&config),
+        Dialect::Pycomm3 => pycomm3::export(&config),
+        Dialect::Rust => rust::export(&config),
+        Dialect::Cli => cli::export(&config),
+        Dialect::Hex => hex::export(&config),
+    };
+    changes.extend(further);
+    Code { text: header::with_losses(to, text, &changes), changes }
+}
+
+/// Reads blocks from a text. Without a dialect each part of the text is recognised by itself.
+pub fn import(text: &str, dialect: Option<Dialect>) -> Imported {
+    let mut imported = Imported::default();
+    if text.len() > MAX_TEXT {
+        imported.remarks.push(Remark::error(1, 1, "", RemarkKind::TextTooLong { limit: MAX_TEXT }));
+        return imported;
+    }
+    for piece in recognise::pieces(text, dialect) {
+        let Imported { mut blocks, mut remarks } = read(piece.form, &piece.text);
+        let down = piece.first_line - 1;
+        for found in &mut blocks {
+            found.lines = found.lines.start + down..found.lines.end + down;
+            remark::move_down(&mut found.remarks, down);
+        }
+        remark::move_down(&mut remarks, down);
+        imported.blocks.append(&mut blocks);
+        imported.remarks.append(&mut remarks);
+    }
+    imported.blocks.sort_by_key(|found| found.lines.start);
+    if let Some(first) = imported.blocks.get(MAX_BLOCKS) {
+        let (line, limit) = (first.lines.start, MAX_BLOCKS);
+        imported.blocks.truncate(MAX_BLOCKS);
+        imported.remarks.push(Remark::error(line, 1, "", RemarkKind::TooManyBlocks { limit }));
+    }
+    imported.remarks.sort_by_key(|remark| (remark.line, remark.column));
+    imported
+}
+
+/// One piece, its lines counted from 1.
+fn read(form: recognise::Form, text: &str) -> Imported {
+    match form {
+        recognise::Form::Parameters => parameters::import(text),
+        recognise::Form::Code(dialect) => match dialect {
+            Dialect::Json => json::import(text),
+            Dialect::CcwSt => ccw_st::import(text),
+            Dialect::L5x => l5x::import(text),
+            Dialect::SendReqEtc100 | Dialect::SendReqEtc101 | Dialect::DataExch => {
+                control_expert::import(text, dialect)
+            }
+            Dialect::SysmacSt => sysmac_st::import(text),
+            Dialect::Pycomm3 => pycomm3::import(text),
+            Dialect::Rust => rust::import(text),
+            Dialect::Cli => cli::import(text),
+            Dialect::Hex => hex::import(text),
+        },
+    }
+}
