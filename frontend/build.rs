@@ -17,7 +17,7 @@ fn main() {
     println!("cargo:rerun-if-changed=locales");
     let to = env::var_os("OUT_DIR").expect("cargo names a folder");
     let mut tables = String::new();
-    for name in ["page", "office", "devices"] {
+    for name in ["page", "office", "devices", "words", "code"] {
         let file = format!("locales/en/{name}.toml");
         let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
         let table: toml::Table = toml::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));

@@ -20,7 +20,7 @@ macro_rules! tr {
 }
 pub(crate) use tr;
 
-// Sorted by their keys: PAGE, OFFICE, DEVICES, and what is looked up at run time.
+// Sorted by their keys: PAGE, OFFICE, DEVICES, WORDS, CODE, and what is looked up at run time.
 include!(concat!(env!("OUT_DIR"), "/texts.rs"));
 
 /// Keys and their texts, sorted.

@@ -12,11 +12,14 @@
 //! | [`pages`] | what people see |
 //! | [`office`] | the second document: users, lists, audit, history |
 //! | [`devices`] | the third document: devices, groups, variables, their live values |
+//! | [`words`] | the fourth: blocks in Control Expert's terms, SEND_REQ and DATA_EXCH |
+//! | [`code`] | the fifth: messages as code of controllers, and back; projects |
 
 pub mod access;
 pub mod address;
 pub mod app;
 pub mod browser;
+pub mod code;
 pub mod demo;
 pub mod devices;
 pub mod editor;
@@ -31,6 +34,7 @@ pub mod pages;
 pub mod route;
 pub mod store;
 mod theme;
+pub mod words;
 pub mod workbench;
 
 /// Puts the workbench into the document's body.
@@ -49,6 +53,18 @@ pub fn start_office() {
 pub fn start_devices() {
     say_crashes();
     yew::Renderer::<devices::Devices>::new().render();
+}
+
+/// Puts the blocks of words into the document's body.
+pub fn start_words() {
+    say_crashes();
+    yew::Renderer::<words::Words>::new().render();
+}
+
+/// Puts the page of code into the document's body.
+pub fn start_code() {
+    say_crashes();
+    yew::Renderer::<code::CodePages>::new().render();
 }
 
 fn say_crashes() {

@@ -27,7 +27,7 @@ pub(crate) struct Document {
 }
 
 /// All documents.
-pub(crate) const DOCUMENTS: [Document; 3] = [
+pub(crate) const DOCUMENTS: [Document; 5] = [
     Document {
         name: "page",
         binary: "cipdeck-page",
@@ -38,13 +38,25 @@ pub(crate) const DOCUMENTS: [Document; 3] = [
         name: "office",
         binary: "cipdeck-office",
         index: "office.html",
-        styles: &["tokens", "base", "kit", "access", "office"],
+        styles: &["tokens", "base", "kit", "access", "document", "office"],
     },
     Document {
         name: "devices",
         binary: "cipdeck-devices",
         index: "devices.html",
-        styles: &["tokens", "base", "kit", "access", "office", "devices"],
+        styles: &["tokens", "base", "kit", "access", "document", "office", "devices"],
+    },
+    Document {
+        name: "words",
+        binary: "cipdeck-words",
+        index: "words.html",
+        styles: &["tokens", "base", "kit", "access", "document", "words"],
+    },
+    Document {
+        name: "code",
+        binary: "cipdeck-code",
+        index: "code.html",
+        styles: &["tokens", "base", "kit", "access", "document", "code"],
     },
 ];
 
@@ -224,14 +236,16 @@ mod tests {
             index: r#"<link href="/styles.css"><link href="/icon.svg"><link href="/page.wasm"><link href="/page.js"><script src="/boot.js">"#.into(),
             boot: boot.into(),
             icon: "<svg/>".into(),
-            styles: ["tokens", "base", "kit", "access", "pages", "office", "devices"].map(|name| (name.into(), format!(".{name} {{}}"))).into(),
+            styles: ["tokens", "base", "kit", "access", "document", "pages", "office", "devices", "words", "code"].map(|name| (name.into(), format!(".{name} {{}}"))).into(),
         }
     }
 
     /// All documents, with this as the module of the first.
     fn assembled(boot: &str, wasm: &[u8]) -> Result<Files> {
         let mut files = Files::new();
-        for (document, wasm) in DOCUMENTS.into_iter().zip([wasm, b"office", b"plants"]) {
+        for (document, wasm) in
+            DOCUMENTS.into_iter().zip([wasm, b"office", b"plants", b"send_req", b"export"])
+        {
             let bound = Bound {
                 wasm: wasm.to_vec(),
                 script: format!("export {{{}}}", document.name),
@@ -253,7 +267,7 @@ mod tests {
         let files = assembled(BOOT, b"\0asm").unwrap();
         let indices = DOCUMENTS.map(|document| index(&files, &document));
         let named: Vec<_> = files.keys().filter(|name| !name.ends_with("html")).collect();
-        assert_eq!(named.len(), 13, "one icon for all: {named:?}");
+        assert_eq!(named.len(), 21, "one icon for all: {named:?}");
         for name in named {
             let quoted = format!("\"/{name}\"");
             assert!(indices.iter().any(|index| index.contains(&quoted)), "{name} is in no document");
@@ -268,8 +282,10 @@ mod tests {
             String::from_utf8(found.unwrap().1.clone()).unwrap()
         };
         assert!(sheet("page").ends_with(".access{}.pages{}"), "{}", sheet("page"));
-        assert!(sheet("office").ends_with(".access{}.office{}"), "{}", sheet("office"));
+        assert!(sheet("office").ends_with(".document{}.office{}"), "{}", sheet("office"));
         assert!(sheet("devices").ends_with(".office{}.devices{}"), "{}", sheet("devices"));
+        assert!(sheet("words").ends_with(".document{}.words{}"), "{}", sheet("words"));
+        assert!(sheet("code").ends_with(".document{}.code{}"), "{}", sheet("code"));
     }
 
     #[test]
@@ -279,7 +295,7 @@ mod tests {
         assert!(changed.iter().all(|name| name.starts_with("boot") || name.ends_with("wasm")), "{changed:?}");
         assert_eq!(changed.len(), 2);
         let are_equal = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
-        assert_eq!(are_equal, [false, true, true]);
+        assert_eq!(are_equal, [false, true, true, true, true]);
     }
 
     #[test]
@@ -288,7 +304,7 @@ mod tests {
         let before = files.len();
         zip(&mut files).unwrap();
         let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with("gz")).collect();
-        assert_eq!(zipped.len(), before - 4, "all but the documents and the icon");
+        assert_eq!(zipped.len(), before - 6, "all but the documents and the icon");
         assert!(zipped.iter().all(|(_, content)| content.starts_with(&[0x1F, 0x8B])));
     }
 

@@ -7,7 +7,7 @@ use super::*;
 
 #[test]
 fn a_text_is_found_by_its_whole_key() {
-    for table in [PAGE, OFFICE, DEVICES, CAUSE, TRY, RULE, PROBLEM, EVENT, MEMBER] {
+    for table in [PAGE, OFFICE, DEVICES, WORDS, CODE, CAUSE, TRY, RULE, PROBLEM, EVENT, MEMBER] {
         assert!(!table.is_empty());
         for (key, text) in table {
             assert_eq!(find(table, key), Some(*text));

@@ -32,13 +32,15 @@ pub(crate) async fn show(method: Method, uri: Uri, headers: HeaderMap) -> Respon
     }
 }
 
-/// The document of an address, if it is not that of a file: the office, the devices, or the workbench.
+/// The document of an address, if it is not that of a file: one of those with an address of their own, or the workbench.
 fn document(path: &str) -> Option<&'static str> {
     let (first, last) = (path.split('/').next(), path.rsplit('/').next());
     match (first, last) {
         (_, Some(name)) if name.contains('.') => None,
         (Some("office"), _) => Some("office.html"),
         (Some("devices"), _) => Some("devices.html"),
+        (Some("words"), _) => Some("words.html"),
+        (Some("code"), _) => Some("code.html"),
         _ => Some("index.html"),
     }
 }
@@ -92,7 +94,8 @@ mod tests {
 
     #[test]
     fn an_address_is_that_of_a_document_or_of_a_file() {
-        for path in ["", "monitor", "deck/b7", "officer", "deck/office", "deck/devices"] {
+        for path in ["", "monitor", "deck/b7", "officer", "deck/office", "deck/devices", "wordy", "deck/code"]
+        {
             assert_eq!(document(path), Some("index.html"), "{path}");
         }
         for path in ["office", "office/", "office/sign-in", "office/history/b7"] {
@@ -100,6 +103,12 @@ mod tests {
         }
         for path in ["devices", "devices/", "devices/d1", "devices/g12/trend"] {
             assert_eq!(document(path), Some("devices.html"), "{path}");
+        }
+        for path in ["words", "words/", "words/new", "words/b7"] {
+            assert_eq!(document(path), Some("words.html"), "{path}");
+        }
+        for path in ["code", "code/", "code/b7", "code/project"] {
+            assert_eq!(document(path), Some("code.html"), "{path}");
         }
         for path in ["icon.svg", "office/page.js", "snippets/gloo-0123/inline0.js"] {
             assert_eq!(document(path), None, "{path}");
