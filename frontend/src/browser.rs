@@ -1,6 +1,5 @@
 //! The few things that the page asks the browser for. Every one has an answer where the browser has none.
 
-use cipdeck_shared::config::MsgCipGeneric;
 use js_sys::Date;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use web_sys::{Document, Element, Storage};
@@ -11,12 +10,12 @@ pub fn now_ms() -> f64 {
     web_sys::window().and_then(|window| window.performance()).map_or(0.0, |performance| performance.now())
 }
 
-/// Whether a block's name or target contains a text, in upper or lower case.
-pub fn is_found(wanted: &str, config: &MsgCipGeneric) -> bool {
+/// Whether one of some texts contains another one, in upper or lower case.
+pub fn is_found(wanted: &str, texts: [&str; 2]) -> bool {
     // The browser's own: Rust's tables of cases would be 5 kB of the page.
     let lower = |text: &str| js_sys::JsString::from(text).to_lower_case();
     let wanted = String::from(lower(wanted.trim()));
-    [&config.name, &config.target_cfg.path].iter().any(|text| lower(text).includes(&wanted, 0))
+    texts.iter().any(|text| lower(text).includes(&wanted, 0))
 }
 
 /// Whether a text contains another one, in upper or lower case.

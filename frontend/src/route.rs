@@ -6,7 +6,7 @@ use yew::prelude::*;
 
 use crate::{
     address::{self, use_path},
-    store::DeckId,
+    store::{DeckId, Row},
 };
 
 /// A page.
@@ -69,6 +69,14 @@ pub fn use_route() -> Route {
 /// A link to a page.
 pub fn link(to: Route, class: &'static str, words: Html) -> Html {
     address::link(to.path(), class, words)
+}
+
+/// A link to a block: a `SEND_REQ` or `DATA_EXCH` has its page in another document.
+pub fn block_link(row: &Row, words: Html) -> Html {
+    if row.config.as_msg().is_some() {
+        return link(Route::Block(row.id), "", words);
+    }
+    html! { <a href={format!("/words/{}", row.id)}>{ words }</a> }
 }
 
 /// Where to go instead.

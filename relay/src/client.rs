@@ -7,7 +7,7 @@
 //!
 //! let client = Client::start();
 //! let config = MsgCipGeneric::product_name("4,192.168.1.100");
-//! let mut message = client.message(&config).map_err(|findings| format!("{findings:?}"))?;
+//! let mut message = client.message(&config.into()).map_err(|findings| format!("{findings:?}"))?;
 //! let answer = message.run().await?;
 //! println!("{:?} {:02x?}", answer.view.status, answer.exchange.response());
 //! client.stop().await;
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, LastSuccess};
-use cipdeck_shared::config::{BlockId, MsgCipGeneric, Target};
+use cipdeck_shared::config::{BlockConfig, BlockId, Target};
 use cipdeck_shared::engine::{BlockView, Exchange, TargetView};
 use cipdeck_shared::plan::{Finding, MessagePlan};
 
@@ -81,8 +81,8 @@ impl Client {
     }
 
     /// A message that can be sent, or what is wrong with it; nothing is sent yet.
-    pub fn message(&self, config: &MsgCipGeneric) -> Result<Message, Vec<Finding>> {
-        let (plan, findings) = MessagePlan::parse(config);
+    pub fn message(&self, config: &BlockConfig) -> Result<Message, Vec<Finding>> {
+        let (plan, findings) = MessagePlan::of(config);
         Ok(self.planned(plan.ok_or(findings)?))
     }
 

@@ -1,6 +1,6 @@
 //! A block as somebody sends it or keeps it in a file: the relay gives the id and counts the revisions.
 
-use cipdeck_shared::config::{MsgCipGeneric, read_hex, write_hex};
+use cipdeck_shared::config::{BlockConfig, read_hex, read_words, write_hex, write_words};
 use serde::Deserialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -16,14 +16,24 @@ pub(crate) struct Draft {
     pub(crate) revision: Option<u64>,
     /// The pins.
     #[serde(flatten)]
-    pub(crate) config: MsgCipGeneric,
+    pub(crate) config: BlockConfig,
 }
 
-/// As it is stored: bytes in lower case without spaces, and `Cancel`, which is an input, FALSE.
-pub(crate) fn normalised(mut config: MsgCipGeneric) -> MsgCipGeneric {
-    config.ctrl_cfg.cancel = false;
-    if let Ok(bytes) = read_hex(&config.req_data) {
-        config.req_data = write_hex(&bytes);
+/// As it is stored: bytes in lower case without spaces, words in their one spelling, and `Cancel`, which is an input,
+/// FALSE.
+pub(crate) fn normalised(mut config: BlockConfig) -> BlockConfig {
+    match &mut config {
+        BlockConfig::MsgCipGeneric(config) => {
+            config.ctrl_cfg.cancel = false;
+            if let Ok(bytes) = read_hex(&config.req_data) {
+                config.req_data = write_hex(&bytes);
+            }
+        }
+        BlockConfig::SendReq(config) => {
+            if let Ok(words) = read_words(&config.data_to_send) {
+                config.data_to_send = write_words(&words);
+            }
+        }
     }
     config
 }
@@ -39,6 +49,7 @@ mod tests {
         let draft: Draft = serde_json::from_str(text).unwrap();
         assert_eq!((draft.id, draft.revision), (Some("b3".into()), Some(2)));
         let config = normalised(draft.config);
+        let config = config.as_msg().unwrap();
         assert_eq!((config.req_data.as_str(), config.ctrl_cfg.cancel), ("0a0bff", false));
         assert_eq!(config.extra.keys().collect::<Vec<_>>(), ["Colour"]);
     }

@@ -237,7 +237,7 @@ mod tests {
         let block = Block {
             id: BlockId(1),
             revision: 2,
-            config: cipdeck_shared::config::MsgCipGeneric::product_name("0,0"),
+            config: cipdeck_shared::config::MsgCipGeneric::product_name("0,0").into(),
         };
         for error in [
             ApiError::Unreadable(String::new()),

@@ -1,26 +1,12 @@
-//! What belongs to a write: the read of what is there, before and after, and both in words.
+//! What belongs to a write: what is there before and after, in words.
 
 use cipdeck_shared::api::{ReadValue, Written};
-use cipdeck_shared::config::{Channel, MsgCipGeneric, read_hex, write_hex};
+use cipdeck_shared::config::write_hex;
 use cipdeck_shared::dissect;
 use cipdeck_shared::plan::MessagePlan;
 use cipdeck_shared::tag::DataFields;
 
 use crate::runner::Ended;
-
-/// A service that writes, and the one that reads the same. CIP Vol 1, appendix A.
-const PAIRS: [(i64, i64); 3] = [(0x02, 0x01), (0x10, 0x0E), (0x19, 0x18)];
-
-/// The read of what a configuration writes; none where no service reads the same.
-pub(crate) fn reader(config: &MsgCipGeneric) -> Option<MessagePlan> {
-    let (_, read) = PAIRS.into_iter().find(|(write, _)| *write == config.app_cfg.service)?;
-    let mut reader = config.clone();
-    reader.app_cfg.service = read;
-    // Not one of the controller's four buffers, and nothing of its own to send.
-    (reader.channel, reader.ctrl_cfg.trigger_type, reader.resume) = (Channel::Monitor, 0, false);
-    (reader.req_data, reader.req_length) = (String::new(), None);
-    MessagePlan::parse(&reader).0
-}
 
 /// What a read has found, or why there is nothing.
 pub(crate) fn found(ended: &Ended, layout: &str) -> Result<ReadValue, String> {
@@ -35,13 +21,11 @@ pub(crate) fn found(ended: &Ended, layout: &str) -> Result<ReadValue, String> {
 }
 
 /// What a write will leave behind: its data as the read would find it.
-pub(crate) fn wanted(reader: &MessagePlan, config: &MsgCipGeneric) -> Option<ReadValue> {
-    let data = read_hex(&config.req_data).ok()?;
-    let length = config.req_length.and_then(|length| usize::try_from(length).ok()).unwrap_or(data.len());
-    let data = data.get(..length)?;
+pub(crate) fn wanted(reader: &MessagePlan, write: &MessagePlan, layout: &str) -> Option<ReadValue> {
+    let data = write.request().data();
     let service = reader.bytes().first()? | 0x80;
     let reply = [&[service, 0, 0, 0], data].concat();
-    Some(value(reader.bytes(), &reply, data, &config.req_layout))
+    Some(value(reader.bytes(), &reply, data, layout))
 }
 
 /// Both sides of a write that has been carried out.

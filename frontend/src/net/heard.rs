@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn what_the_relay_says_is_read() {
-        let block = Block { id: BlockId(7), revision: 3, config: MsgCipGeneric::product_name("0,0") };
+        let block = Block { id: BlockId(7), revision: 3, config: MsgCipGeneric::product_name("0,0").into() };
         let changes = ServerMessage::Changes {
             seq: 8,
             statuses: Vec::new(),

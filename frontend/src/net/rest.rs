@@ -40,13 +40,11 @@ pub async fn create(config: &MsgCipGeneric) -> Answered<Block> {
     parse(&ask(Method::POST, "blocks", Some(json(config)?)).await?)
 }
 
-/// Replaces a block; the block names the revision that it replaces.
-pub async fn replace(block: &Block) -> Answered<Block> {
-    let mut config = block.config.clone();
+/// Replaces a revision of a block.
+pub async fn replace(id: BlockId, revision: u64, mut config: MsgCipGeneric) -> Answered<Block> {
     // One way to write configurations instead of two. The relay takes the id from the address.
-    config.extra.insert("revision".to_owned(), block.revision.into());
-    config.extra.insert("id".to_owned(), String::from(block.id).into());
-    parse(&ask(Method::PUT, &format!("blocks/{}", block.id), Some(json(&config)?)).await?)
+    config.extra.insert("revision".to_owned(), revision.into());
+    parse(&ask(Method::PUT, &format!("blocks/{id}"), Some(json(&config)?)).await?)
 }
 
 /// Deletes a block, if it still has this revision.

@@ -7,7 +7,7 @@ use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView, Written},
-    config::{Block, BlockId, MsgCipGeneric},
+    config::{Block, BlockConfig, BlockId, MsgCipGeneric},
     engine::BlockView,
 };
 use yew::Callback;
@@ -30,7 +30,7 @@ pub struct Row {
     /// The stored revision; 0 for a block that is not stored.
     pub revision: u64,
     /// The stored configuration; of a block that is not stored, its draft.
-    pub config: Rc<MsgCipGeneric>,
+    pub config: Rc<BlockConfig>,
     /// What its engine said last.
     pub status: Rc<BlockStatus>,
     /// The edges of its newest run.
@@ -130,7 +130,7 @@ impl RowStore {
 
     /// The configuration of a block that exists in this browser only.
     pub fn put_new(&self, id: DeckId, config: Rc<MsgCipGeneric>) {
-        self.put_config(id, 0, config);
+        self.put_config(id, 0, Rc::new((*config).clone().into()));
     }
 
     /// A newer status.
@@ -171,7 +171,7 @@ impl RowStore {
         self.ask();
     }
 
-    fn put_config(&self, id: DeckId, revision: u64, config: Rc<MsgCipGeneric>) {
+    fn put_config(&self, id: DeckId, revision: u64, config: Rc<BlockConfig>) {
         let mut state = self.0.state.borrow_mut();
         if let Some(row) = state.rows.get_mut(&id) {
             let row = Rc::make_mut(row);

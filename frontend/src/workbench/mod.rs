@@ -114,11 +114,18 @@ impl Workbench {
         }
     }
 
-    /// The draft of an entry, or one of what is stored.
+    /// The draft of an entry, or one of what is stored. There is none of a block that is edited elsewhere.
     pub fn draft(&self, id: DeckId) -> Option<Draft> {
         let row = self.0.rows.row(id)?;
-        let stored = || Draft::new((*row.config).clone(), id.stored().map(|_| row.revision));
+        let config = row.config.as_msg()?;
+        let stored = || Draft::new(config.clone(), id.stored().map(|_| row.revision));
         Some(self.0.drafts.draft(id).map_or_else(stored, |draft| (*draft).clone()))
+    }
+
+    /// What an entry is called, in its draft if it has one.
+    pub fn name(&self, id: DeckId) -> String {
+        let stored = || self.0.rows.row(id).map(|row| row.config.name().to_owned());
+        self.draft(id).map(|draft| draft.config.name).or_else(stored).unwrap_or_default()
     }
 
     /// Adds a block that is not stored yet; its name is made unique.
@@ -153,7 +160,10 @@ impl Workbench {
     /// Whether an entry holds something that is not stored.
     pub fn is_unsaved(&self, id: DeckId) -> bool {
         let (row, draft) = (self.0.rows.row(id), self.0.drafts.draft(id));
-        id.stored().is_none() || row.zip(draft).is_some_and(|(row, draft)| draft.differs_from(&row.config))
+        id.stored().is_none()
+            || row.zip(draft).is_some_and(|(row, draft)| {
+                row.config.as_msg().is_none_or(|stored| draft.differs_from(stored))
+            })
     }
 
     /// Runs an entry once.
@@ -253,7 +263,7 @@ impl Workbench {
 
     fn unique_name(&self, name: &str) -> String {
         let ids = self.0.rows.ids();
-        let taken: Vec<_> = ids.iter().filter_map(|id| Some(self.draft(*id)?.config.name)).collect();
+        let taken: Vec<_> = ids.iter().map(|id| self.name(*id)).collect();
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         std::iter::once(name.to_owned())
             .chain(numbered)

@@ -51,7 +51,7 @@ impl Workbench {
             }
             DeckId::Stored(block) => {
                 let revision = draft.revision.unwrap_or_default();
-                rest::replace(&Block { id: block, revision, config: draft.config.clone() }).await
+                rest::replace(block, revision, draft.config.clone()).await
             }
             DeckId::New(_) => rest::create(&draft.config).await,
         };

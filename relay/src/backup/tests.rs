@@ -18,7 +18,7 @@ fn config(name: &str) -> MsgCipGeneric {
 /// A data folder with one block and two records.
 async fn filled(folder: &Path) -> (Store, Audit) {
     let store = Store::open(Some(&folder.join("cipdeck.sqlite"))).await.unwrap();
-    store.insert(config("drive-current")).await.unwrap();
+    store.insert(config("drive-current").into()).await.unwrap();
     let audit = Audit::open(Some(folder)).unwrap();
     for _ in 0..2 {
         audit.append(&Record::new(Event::SignIn, "anna", "")).unwrap();
@@ -30,7 +30,8 @@ async fn filled(folder: &Path) -> (Store, Audit) {
 
 async fn block_names(folder: &Path) -> Vec<String> {
     let store = Store::open(Some(&folder.join("cipdeck.sqlite"))).await.unwrap();
-    let names = store.load().await.unwrap().into_iter().map(|stored| stored.block.config.name).collect();
+    let names =
+        store.load().await.unwrap().into_iter().map(|stored| stored.block.config.name().to_owned()).collect();
     store.close().await;
     names
 }
@@ -42,7 +43,7 @@ async fn a_relay_that_is_writing_is_copied_and_comes_back_as_it_was() {
     let file = place.path().join("monday.tar");
     make(data.path(), &file, true).unwrap();
     // What comes later is not in it.
-    store.insert(config("later")).await.unwrap();
+    store.insert(config("later").into()).await.unwrap();
     audit.append(&Record::new(Event::SignOut, "anna", "")).unwrap();
 
     let back = place.path().join("back");

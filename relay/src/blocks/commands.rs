@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use cipdeck_shared::api::{BlockStatus, ReadValue, WriteTicket, Written, findings};
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
+use cipdeck_shared::config::{Block, BlockConfig, BlockId};
 use cipdeck_shared::plan::MessagePlan;
 
 use super::{Blocks, plan};
@@ -34,12 +34,12 @@ impl Blocks {
         }
         let order = Order { actor: actor.clone(), confirmed: policy.hypothetical(revision) };
         runner.ask(id, &order)?;
-        let reader = ritual::reader(&block.config);
+        let reader = plan.reader();
         let old = match &reader {
             Some(reader) => self.read(actor, &block, reader.clone()).await,
             None => Err("no service reads what this one writes".to_owned()),
         };
-        let new = reader.and_then(|reader| ritual::wanted(&reader, &block.config));
+        let new = reader.and_then(|reader| ritual::wanted(&reader, &plan, block.config.req_layout()));
         let offer = Offer { revision, request: Arc::clone(plan.bytes()), old: old.clone().ok(), new };
         Ok(policy.offer(actor, id, &offer, old.err()).map_err(Refused::from)?)
     }
@@ -68,11 +68,11 @@ impl Blocks {
         &self,
         actor: &Actor,
         id: BlockId,
-        config: &MsgCipGeneric,
+        config: &BlockConfig,
         confirmed: Confirmed,
     ) -> Written {
         let block = Block { id, revision: confirmed.revision, config: config.clone() };
-        let read = match ritual::reader(config) {
+        let read = match plan(config).ok().and_then(|plan| plan.reader()) {
             Some(reader) => self.read(actor, &block, reader).await.ok(),
             None => None,
         };
@@ -89,10 +89,10 @@ impl Blocks {
     /// A read that belongs to a write.
     async fn read(&self, actor: &Actor, block: &Block, plan: MessagePlan) -> Result<ReadValue, String> {
         let order = Order::read(actor.clone());
-        let ended = self.0.runner.pass(&block.config.name, plan, order).await;
+        let ended = self.0.runner.pass(&block.config.name(), plan, order).await;
         ended
             .map_err(|refused| refused.to_string())
-            .and_then(|ended| ritual::found(&ended, &block.config.req_layout))
+            .and_then(|ended| ritual::found(&ended, block.config.req_layout()))
     }
 
     fn order(&self, actor: &Actor, id: BlockId, ticket: Option<&str>) -> Result<Order, ApiError> {
@@ -108,7 +108,7 @@ impl Blocks {
         input: bool,
         ticket: Option<&str>,
     ) -> Result<BlockStatus, ApiError> {
-        let resumes = self.block(id)?.config.resume;
+        let resumes = self.block(id)?.config.resume();
         // To stop takes no ticket: one that is not good any more must keep nobody from it.
         let order = Some(self.order(actor, id, ticket.filter(|_| input))?);
         if resumes {

@@ -6,7 +6,7 @@ use std::future::Future;
 use std::sync::Arc;
 
 use cipdeck_shared::api::{BlockStatus, Checked, ExchangeView, TargetStatus, findings};
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, write_hex};
+use cipdeck_shared::config::{Block, BlockConfig, BlockId, write_hex};
 use cipdeck_shared::engine::BlockView;
 use cipdeck_shared::plan::{Finding, MessagePlan};
 use tokio::sync::Mutex;
@@ -50,9 +50,9 @@ impl Blocks {
         for stored in &all {
             let Block { id, revision, config } = &stored.block;
             hub.put(stored.block.clone());
-            runner.put(*id, &config.name, *revision, plan(config));
+            runner.put(*id, config.name(), *revision, plan(config));
         }
-        for stored in all.iter().filter(|stored| stored.input && stored.block.config.resume) {
+        for stored in all.iter().filter(|stored| stored.input && stored.block.config.resume()) {
             // Without a plan there is nothing to resume; a plan that resumes only reads.
             if plan(&stored.block.config).is_ok_and(|plan| plan.resume())
                 && let Err(refused) = runner.set_in(stored.block.id, true, Some(Order::read(Actor::relay())))
@@ -92,7 +92,7 @@ impl Blocks {
 
     /// The last exchanges as a pcapng file, and what to call it.
     pub(crate) fn capture(&self, id: BlockId) -> Result<(String, Vec<u8>), ApiError> {
-        let name = self.block(id)?.config.name;
+        let name = self.block(id)?.config.name().to_owned();
         let frames = self.0.hub.frames(id).ok_or_else(|| ApiError::no_block(id))?;
         let file = capture::of_exchanges(&frames).map_err(|error| ApiError::Internal(error.to_string()))?;
         Ok((capture::file_name(&name, id), file))
@@ -114,9 +114,9 @@ impl Blocks {
         self.edit(|inner| async move {
             let block = inner.store.insert(config).await?;
             inner.hub.put(block.clone());
-            inner.runner.put(block.id, &block.config.name, block.revision, Ok(plan));
+            inner.runner.put(block.id, block.config.name(), block.revision, Ok(plan));
             inner.note(Event::BlockCreated, &actor, &block);
-            tracing::info!(block = %block.id, name = block.config.name, "created");
+            tracing::info!(block = %block.id, name = block.config.name(), "created");
             Ok(block)
         })
         .await
@@ -137,11 +137,11 @@ impl Blocks {
         let actor = actor.clone();
         self.edit(|inner| async move {
             let block = done(id, inner.store.replace(id, revision, config).await?)?;
-            if block.config.resume {
+            if block.config.resume() {
                 let input = inner.runner.view(id).is_some_and(|view| view.input);
                 inner.store.set_input(id, input).await?;
             }
-            inner.runner.put(id, &block.config.name, block.revision, Ok(plan));
+            inner.runner.put(id, block.config.name(), block.revision, Ok(plan));
             inner.hub.put(block.clone());
             inner.note(Event::BlockChanged, &actor, &block);
             tracing::info!(block = %id, revision = block.revision, "changed");
@@ -205,28 +205,28 @@ impl Inner {
         let request = plan(config).map(|plan| write_hex(plan.bytes())).ok();
         let record = record(event, actor)
             .with("block", block.id.to_string())
-            .with("name", config.name.clone())
+            .with("name", config.name())
             .with("revision", block.revision)
-            .with("target", config.target_cfg.path.clone())
+            .with("target", config.target_text())
             .with_some("request", request);
         self.policy.note(&record);
     }
 }
 
 /// All findings about a configuration, and the bytes that it would send.
-pub(crate) fn check(config: &MsgCipGeneric) -> Checked {
+pub(crate) fn check(config: &BlockConfig) -> Checked {
     let (plan, all) = MessagePlan::check(config);
     let request = plan.map(|plan| write_hex(plan.bytes()));
     Checked { findings: findings(&all), request }
 }
 
-fn plan(config: &MsgCipGeneric) -> Result<MessagePlan, Vec<Finding>> {
-    let (plan, findings) = MessagePlan::parse(config);
+fn plan(config: &BlockConfig) -> Result<MessagePlan, Vec<Finding>> {
+    let (plan, findings) = MessagePlan::of(config);
     plan.ok_or(findings)
 }
 
 /// What can be stored, in its one spelling.
-fn accepted(config: MsgCipGeneric) -> Result<(MsgCipGeneric, MessagePlan), ApiError> {
+fn accepted(config: BlockConfig) -> Result<(BlockConfig, MessagePlan), ApiError> {
     let config = normalised(config);
     match MessagePlan::check(&config) {
         (Some(plan), _) => Ok((config, plan)),

@@ -33,7 +33,7 @@ impl Check {
         } else {
             report::findings(&findings);
             if let Some(plan) = &plan {
-                say(&format!("{} is ready to be sent: {}", config.name, write_hex(plan.bytes())));
+                say(&format!("{} is ready to be sent: {}", config.name(), write_hex(plan.bytes())));
             }
         }
         if plan.is_some() { Exit::SUCCESS } else { Exit::FINDINGS }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use cipdeck_shared::config::MsgCipGeneric;
+use cipdeck_shared::config::BlockConfig;
 use cipdeck_shared::plan::MessagePlan;
 use clap::Args;
 
@@ -47,7 +47,7 @@ impl Mode {
 }
 
 /// Runs what can be run and prints it.
-pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
+pub(super) async fn execute(config: &BlockConfig, mode: &Mode) -> Exit {
     let (plan, findings) = MessagePlan::check(config);
     report::findings(&findings);
     let Some(plan) = plan else {
@@ -77,7 +77,7 @@ pub(super) async fn execute(config: &MsgCipGeneric, mode: &Mode) -> Exit {
     }
 }
 
-async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> Exit {
+async fn repeat(message: &mut Message, config: &BlockConfig, mode: &Mode) -> Exit {
     let mut exit = Exit::SUCCESS;
     for number in mode.numbers() {
         // Whoever types the command has seen what it sends.
@@ -93,14 +93,14 @@ async fn repeat(message: &mut Message, config: &MsgCipGeneric, mode: &Mode) -> E
     exit
 }
 
-fn print(answer: &Answer, config: &MsgCipGeneric, mode: &Mode, number: u64) {
+fn print(answer: &Answer, config: &BlockConfig, mode: &Mode, number: u64) {
     let status = answer.status();
     let exchange = &answer.exchange;
     show(&Report::new(&status, &exchange.request, exchange.response(), config), config, mode, number);
 }
 
 /// Prints how a run has ended.
-pub(super) fn show(report: &Report<'_>, config: &MsgCipGeneric, mode: &Mode, number: u64) {
+pub(super) fn show(report: &Report<'_>, config: &BlockConfig, mode: &Mode, number: u64) {
     match (mode.json, mode.repeat) {
         (true, _) => say(&report.json()),
         (false, Some(_)) => say(&format!("{number:>4}  {}", report.line())),

@@ -1,7 +1,7 @@
 //! What is printed about findings and about a message that has ended.
 
 use cipdeck_shared::api::{self, BlockStatus, Checked};
-use cipdeck_shared::config::{MsgCipGeneric, space_hex, write_hex};
+use cipdeck_shared::config::{BlockConfig, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
@@ -46,9 +46,9 @@ impl<'a> Report<'a> {
         status: &'a BlockStatus,
         request: &[u8],
         response: Option<&[u8]>,
-        config: &MsgCipGeneric,
+        config: &BlockConfig,
     ) -> Self {
-        let decode = |response| match DataFields::read(&config.res_layout) {
+        let decode = |response| match DataFields::read(config.res_layout()) {
             Ok(layout) => dissect::decode_as(&layout, response),
             // Empty: nobody has said.
             Err(_) => dissect::decode(request, response),
@@ -78,7 +78,7 @@ impl<'a> Report<'a> {
     }
 
     /// For people.
-    pub(super) fn text(&self, config: &MsgCipGeneric) -> String {
+    pub(super) fn text(&self, config: &BlockConfig) -> String {
         let mut lines = vec![title(config)];
         let elapsed = duration(self.status.elapsed_us);
         if self.status.status.error {
@@ -100,7 +100,11 @@ impl<'a> Report<'a> {
 }
 
 /// `Get_Attribute_Single of Identity 1/1/7 at 4,192.168.1.100`
-fn title(config: &MsgCipGeneric) -> String {
+fn title(config: &BlockConfig) -> String {
+    let config = match config {
+        BlockConfig::MsgCipGeneric(config) => config,
+        BlockConfig::SendReq(config) => return format!("{} to {}", config.form(), config.address),
+    };
     let app = &config.app_cfg;
     let class = u16::try_from(app.class).unwrap_or_default();
     let service = ServiceCode(u8::try_from(app.service).unwrap_or_default());

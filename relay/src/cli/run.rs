@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cipdeck_shared::config::MsgCipGeneric;
+use cipdeck_shared::config::BlockConfig;
 use clap::Args;
 
 use super::Exit;
@@ -32,7 +32,7 @@ impl Run {
 }
 
 /// Reads a block; its id and revision do not matter here.
-pub(super) fn read(file: &Path) -> Result<MsgCipGeneric, Exit> {
+pub(super) fn read(file: &Path) -> Result<BlockConfig, Exit> {
     let name = file.display();
     let text = std::fs::read(file).map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
     let draft: Draft = serde_json::from_slice(&text)

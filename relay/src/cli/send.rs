@@ -45,7 +45,7 @@ impl Send {
     /// Sends and prints.
     pub(super) async fn execute(self) -> Exit {
         let mode = self.mode.clone();
-        execute(&self.config(), &mode).await
+        execute(&self.config().into(), &mode).await
     }
 
     fn config(self) -> MsgCipGeneric {

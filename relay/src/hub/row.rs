@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::SystemTime;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric, read_hex};
+use cipdeck_shared::config::{Block, BlockConfig, BlockId, read_hex};
 use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
 use cipdeck_shared::tag::DataFields;
@@ -156,10 +156,12 @@ impl Row {
 
 /// One that cannot be read has been refused when it was stored.
 fn layout_of(block: &Block) -> Option<DataFields> {
-    DataFields::read(&block.config.res_layout).ok()
+    DataFields::read(block.config.res_layout()).ok()
 }
 
 /// What a block asks, and whom.
-fn asks(config: &MsgCipGeneric) -> impl PartialEq + '_ {
-    (&config.target_cfg.path, &config.app_cfg, &config.req_data, config.req_length)
+fn asks(config: &BlockConfig) -> impl PartialEq + '_ {
+    let msg = config.as_msg().map(|config| (&config.app_cfg, &config.req_data, config.req_length));
+    let words = config.as_send_req().map(|config| (&config.data_to_send, &config.management_param));
+    (config.kind(), config.target_text(), msg, words)
 }

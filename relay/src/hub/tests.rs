@@ -9,7 +9,7 @@ const B1: BlockId = BlockId(1);
 fn hub(count: u32) -> Hub {
     let hub = Hub::recording(Recorder::default());
     for id in 1..=count {
-        hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0") });
+        hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0").into() });
     }
     hub
 }
@@ -76,7 +76,7 @@ fn a_removal_is_told_and_a_viewer_far_behind_starts_again() {
     let update = hub.update(&mut near).unwrap();
     assert_eq!((update.removed, update.statuses.len()), (vec![B1], 0));
     for id in 10..2_000 {
-        hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0") });
+        hub.put(Block { id: BlockId(id), revision: 1, config: MsgCipGeneric::product_name("0,0").into() });
         hub.remove(BlockId(id));
     }
     let update = hub.update(&mut far).unwrap();
@@ -104,7 +104,7 @@ fn a_changed_block_is_told_with_its_status() {
     let hub = hub(1);
     let mut cursor = Cursor::default();
     hub.update(&mut cursor);
-    hub.put(Block { id: B1, revision: 2, config: MsgCipGeneric::product_name("0,0") });
+    hub.put(Block { id: B1, revision: 2, config: MsgCipGeneric::product_name("0,0").into() });
     let update = hub.update(&mut cursor).unwrap();
     assert_eq!((update.blocks[0].revision, update.statuses.len()), (2, 1));
 }
@@ -115,7 +115,7 @@ fn the_last_value_is_read_by_the_blocks_layout() {
     let block = |layout: &str| {
         let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
         layout.clone_into(&mut config.res_layout);
-        Block { id: BlockId(1), revision: 1, config }
+        Block { id: BlockId(1), revision: 1, config: config.into() }
     };
     hub.put(block("speed: REAL; run: BOOL"));
     let view = BlockView { q: true, res_data: vec![0, 0, 0x48, 0x42, 1], ..BlockView::default() };

@@ -1,6 +1,6 @@
 //! Blocks: JSON text and a revision.
 
-use cipdeck_shared::config::{Block, BlockId, MsgCipGeneric};
+use cipdeck_shared::config::{Block, BlockConfig, BlockId};
 use rusqlite::{Connection, OptionalExtension};
 
 use super::{Store, StoreError};
@@ -32,7 +32,7 @@ impl Store {
     }
 
     /// Stores a new block under a fresh id.
-    pub(crate) async fn insert(&self, config: MsgCipGeneric) -> Result<Block, StoreError> {
+    pub(crate) async fn insert(&self, config: BlockConfig) -> Result<Block, StoreError> {
         self.0.call(|connection| insert(connection, config)).await
     }
 
@@ -41,7 +41,7 @@ impl Store {
         &self,
         id: BlockId,
         revision: u64,
-        config: MsgCipGeneric,
+        config: BlockConfig,
     ) -> Result<Change, StoreError> {
         self.0.call(move |connection| replace(connection, id, revision, config)).await
     }
@@ -97,7 +97,7 @@ fn load(connection: &Connection) -> Result<Vec<Stored>, StoreError> {
     Ok(all)
 }
 
-fn insert(connection: &Connection, config: MsgCipGeneric) -> Result<Block, StoreError> {
+fn insert(connection: &Connection, config: BlockConfig) -> Result<Block, StoreError> {
     let text = serde_json::to_string(&config)?;
     let transaction = connection.unchecked_transaction()?;
     transaction.execute("INSERT INTO block (revision, config) VALUES (1, ?1)", [text])?;
@@ -110,7 +110,7 @@ fn replace(
     connection: &mut Connection,
     id: BlockId,
     revision: u64,
-    config: MsgCipGeneric,
+    config: BlockConfig,
 ) -> Result<Change, StoreError> {
     let text = serde_json::to_string(&config)?;
     let transaction = connection.transaction()?;
@@ -152,9 +152,10 @@ fn change(connection: &Connection, id: BlockId, revision: u64) -> Result<Change,
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cipdeck_shared::config::MsgCipGeneric;
 
-    fn config(name: &str) -> MsgCipGeneric {
-        MsgCipGeneric { name: name.to_owned(), ..MsgCipGeneric::product_name("0,0") }
+    fn config(name: &str) -> BlockConfig {
+        MsgCipGeneric { name: name.to_owned(), ..MsgCipGeneric::product_name("0,0") }.into()
     }
 
     #[tokio::test]
@@ -163,7 +164,7 @@ mod tests {
         let block = store.insert(config("a")).await.unwrap();
         assert_eq!((block.id, block.revision), (BlockId(1), 1));
         let Change::Done(second) = store.replace(block.id, 1, config("b")).await.unwrap() else { panic!() };
-        assert_eq!((second.revision, second.config.name.as_str()), (2, "b"));
+        assert_eq!((second.revision, second.config.name()), (2, "b"));
         assert_eq!(store.replace(block.id, 1, config("c")).await.unwrap(), Change::Stale(second.clone()));
         assert_eq!(store.delete(block.id, 1).await.unwrap(), Change::Stale(second.clone()));
         assert_eq!(store.delete(BlockId(9), 1).await.unwrap(), Change::Unknown);

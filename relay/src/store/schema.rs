@@ -74,7 +74,7 @@ mod tests {
             let blocks = store.load().await.unwrap();
             assert_eq!(blocks.len(), 1, "from version {version}");
             assert_eq!((blocks[0].block.id.0, blocks[0].block.revision, blocks[0].input), (7, 3, true));
-            assert_eq!(blocks[0].block.config.name, "drive-current");
+            assert_eq!(blocks[0].block.config.name(), "drive-current");
             assert!(store.users().await.unwrap().is_empty());
             store.close().await;
             let new = Connection::open(&path).unwrap();

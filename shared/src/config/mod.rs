@@ -4,6 +4,7 @@
 //! field it is wrong. Members that this version does not know are kept and reported.
 
 mod block;
+mod block_config;
 mod block_id;
 mod channel;
 mod device;
@@ -14,10 +15,13 @@ mod number;
 mod plant_id;
 mod plc_address;
 mod profile;
+mod send_req;
 mod target_path;
 mod variable;
+mod words;
 
 pub use self::block::Block;
+pub use self::block_config::BlockConfig;
 pub use self::block_id::BlockId;
 pub use self::channel::{Channel, FurtherChannel, UnknownChannel};
 pub use self::device::{Connecting, DEVICE_REQUESTS_PER_S, DEVICE_TIMEOUT_MS, Device, DeviceConfig};
@@ -33,8 +37,10 @@ pub use self::plc_address::{
     PlcAddress, Xway, device_target,
 };
 pub use self::profile::Profile;
+pub use self::send_req::{DATA_EXCH, SEND_REQ, SendReq, SendReqDialect, SendReqForm};
 pub use self::target_path::{CONTROLLER_HOPS, Endpoint, Host, MAX_PATH, PathError, Target, TargetPath};
 pub use self::variable::{
     Choice, MAX_DEPTH, NewVariable, Variable, VariableConfig, full_addresses, join_address,
 };
+pub use self::words::{WordsError, WordsErrorKind, bytes_of, read_words, words_of, write_words};
 pub use crate::tag::{Display as ValueDisplay, Scale};

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::channel::Channel;
 use super::profile::Profile;
 
-/// The `kind` of every block today.
+/// The `kind` of a block of the Micro800.
 pub const MSG_CIPGENERIC: &str = "MSG_CIPGENERIC";
 
 /// Members that this version does not know. They are kept.
@@ -180,7 +180,7 @@ fn kind() -> String {
     MSG_CIPGENERIC.to_string()
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
@@ -205,9 +205,10 @@ mod tests {
     #[test]
     fn a_stored_block_keeps_wrong_numbers_and_unknown_members() {
         let block: Block = serde_json::from_str(STORED).unwrap();
-        assert_eq!((block.config.app_cfg.service, block.config.app_cfg.class), (300, -1));
-        assert_eq!(block.config.extra["Colour"], "red");
-        assert_eq!(block.config.app_cfg.extra["Extended"], true);
+        let config = block.config.as_msg().unwrap();
+        assert_eq!((config.app_cfg.service, config.app_cfg.class), (300, -1));
+        assert_eq!(config.extra["Colour"], "red");
+        assert_eq!(config.app_cfg.extra["Extended"], true);
         let again = serde_json::to_value(&block).unwrap();
         assert_eq!(again, serde_json::from_str::<serde_json::Value>(STORED).unwrap());
     }

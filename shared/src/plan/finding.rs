@@ -84,6 +84,24 @@ pub enum Field {
     ReqLayout,
     /// `ResLayout`
     ResLayout,
+    /// `Dialect` of a SEND_REQ
+    Dialect,
+    /// `Period`
+    Period,
+    /// `Address`
+    Address,
+    /// `Request_Code`
+    RequestCode,
+    /// `Type` of a DATA_EXCH
+    ExchangeType,
+    /// `Data_to_Send`
+    DataToSend,
+    /// `Management_Param`, the whole table
+    ManagementParams,
+    /// `Management_Param[n]`
+    ManagementParam(usize),
+    /// `Received_Data_Size`
+    ReceivedDataSize,
     /// A member that this version does not know.
     Unknown(String),
 }
@@ -115,6 +133,15 @@ impl fmt::Display for Field {
             Self::ResDataSize => "ResDataSize",
             Self::ReqLayout => "ReqLayout",
             Self::ResLayout => "ResLayout",
+            Self::Dialect => "Dialect",
+            Self::Period => "Period",
+            Self::Address => "Address",
+            Self::RequestCode => "Request_Code",
+            Self::ExchangeType => "Type",
+            Self::DataToSend => "Data_to_Send",
+            Self::ManagementParams => "Management_Param",
+            Self::ManagementParam(index) => return write!(f, "Management_Param[{index}]"),
+            Self::ReceivedDataSize => "Received_Data_Size",
             Self::Unknown(name) => name,
         })
     }
@@ -142,6 +169,15 @@ impl Finding {
                 | Field::KeepAlive
                 | Field::ReqLayout
                 | Field::ResLayout
+                | Field::Dialect
+                | Field::Period
+                | Field::Address
+                | Field::RequestCode
+                | Field::ExchangeType
+                | Field::DataToSend
+                | Field::ManagementParams
+                | Field::ManagementParam(_)
+                | Field::ReceivedDataSize
                 | Field::Unknown(_),
                 _,
             ) => return None,

@@ -5,14 +5,16 @@ mod effect;
 mod finding;
 pub mod limits;
 pub mod plant;
+mod reader;
 mod routed;
 mod rule;
 mod tag_way;
+mod words;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::{Channel, MsgCipGeneric, Profile, Target, TargetPath};
+use crate::config::{BlockConfig, Channel, MsgCipGeneric, Profile, Target, TargetPath};
 use crate::table::{self, Access};
 use crate::wire::{Epath, LogicalKind, MessageRouterRequest, ServiceCode};
 
@@ -70,6 +72,23 @@ pub enum TriggerType {
 }
 
 impl MessagePlan {
+    /// The message of a block of any kind, or all findings.
+    pub fn of(config: &BlockConfig) -> (Option<Self>, Vec<Finding>) {
+        match config {
+            BlockConfig::MsgCipGeneric(config) => Self::parse(config),
+            BlockConfig::SendReq(config) => words::parse(config),
+        }
+    }
+
+    /// [`Self::of`], and what is to be said about the layouts. They change nothing that is sent, and the workbench has
+    /// no room for reading them: it leaves them to the relay.
+    pub fn check(config: &BlockConfig) -> (Option<Self>, Vec<Finding>) {
+        match config {
+            BlockConfig::MsgCipGeneric(config) => Self::check_msg(config),
+            BlockConfig::SendReq(config) => words::check(config),
+        }
+    }
+
     /// Runs every rule, so that a form shows all findings at once.
     pub fn parse(config: &MsgCipGeneric) -> (Option<Self>, Vec<Finding>) {
         let mut checks = Checks::default();
@@ -111,9 +130,7 @@ impl MessagePlan {
         (plan, findings)
     }
 
-    /// [`Self::parse`], and what is to be said about the layouts. They change nothing that is sent, and the workbench has
-    /// no room for reading them: it leaves them to the relay.
-    pub fn check(config: &MsgCipGeneric) -> (Option<Self>, Vec<Finding>) {
+    fn check_msg(config: &MsgCipGeneric) -> (Option<Self>, Vec<Finding>) {
         let (plan, mut findings) = Self::parse(config);
         let mut checks = Checks::default();
         checks.layouts(config);

@@ -259,7 +259,7 @@ fn a_layout_that_cannot_be_read_is_no_block_and_one_that_does_not_fit_is_a_warni
     let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
     (config.res_layout, config.req_layout) = ("speed: REEL".into(), "UINT".into());
     config.req_data = "0102030405".into();
-    let (plan, findings) = MessagePlan::check(&config);
+    let (plan, findings) = MessagePlan::check(&config.clone().into());
     let said: Vec<_> = findings.iter().map(|it| alloc::format!("{}: {}", it.field, it.rule)).collect();
     assert!(plan.is_none());
     assert_eq!(
@@ -271,6 +271,6 @@ fn a_layout_that_cannot_be_read_is_no_block_and_one_that_does_not_fit_is_a_warni
         ]
     );
     config.res_layout = "speed: REAL".into();
-    let (plan, findings) = MessagePlan::check(&config);
+    let (plan, findings) = MessagePlan::check(&config.clone().into());
     assert!(plan.is_some() && findings.len() == 1, "a layout changes nothing that is sent");
 }

@@ -34,7 +34,7 @@ pub(crate) async fn ours(way: Way, targets: Vec<SocketAddr>) -> Vec<Ours> {
         config.channel = Channel::Monitor;
         config.app_cfg.attribute = 1;
         config.target_cfg.cip_conn_mode = i64::from(way == Way::Connected);
-        Ours(client.message(&config).expect("a message that can be sent"))
+        Ours(client.message(&config.into()).expect("a message that can be sent"))
     };
     targets.iter().map(open).collect()
 }

@@ -44,17 +44,26 @@ pub(super) fn DataPage(props: &DataProps) -> Html {
         { waiting(&block) }
         if let Some(found) = &block.data {
             <p>
-                <a href={format!("/deck/{}", found.id)} data-test="to-block">{ &found.config.name }</a>
-                <span class="mono hint">{ format!(" {}", found.config.target_cfg.path) }</span>
+                <a href={way_back(found)} data-test="to-block">{ found.config.name() }</a>
+                <span class="mono hint">{ format!(" {}", found.config.target_text()) }</span>
             </p>
-            <Fields key={found.revision.to_string()} block={found.clone()} status={status.data.clone()} on_stored={on_stored} on_again={status.reload} />
+            if let Some(stored) = found.config.as_msg().cloned() {
+                <Fields key={found.revision.to_string()} block={found.clone()} {stored} status={status.data.clone()} on_stored={on_stored} on_again={status.reload} />
+            }
         }
     </> }
+}
+
+/// Where the block itself is edited. One of words has its fields there, too.
+fn way_back(block: &Block) -> String {
+    let document = if block.config.as_msg().is_some() { "deck" } else { "words" };
+    format!("/{document}/{}", block.id)
 }
 
 #[derive(Clone, PartialEq, Properties)]
 struct FieldsProps {
     block: Rc<Block>,
+    stored: MsgCipGeneric,
     status: Option<Rc<BlockStatus>>,
     on_stored: Callback<()>,
     on_again: Callback<()>,
@@ -64,7 +73,7 @@ struct FieldsProps {
 #[component]
 fn Fields(props: &FieldsProps) -> Html {
     let action = use_action();
-    let stored = &props.block.config;
+    let stored = &props.stored;
     let req_layout = use_state(|| stored.req_layout.clone());
     let res_layout = use_state(|| stored.res_layout.clone());
     let req_data = use_state(|| stored.req_data.clone());
@@ -83,7 +92,7 @@ fn Fields(props: &FieldsProps) -> Html {
         move |event: SubmitEvent| {
             event.prevent_default();
             if is_changed && readable {
-                let (block, done) = (Block { config: config.clone(), ..block.clone() }, done.clone());
+                let (block, done) = (Block { config: config.clone().into(), ..block.clone() }, done.clone());
                 action.go(api::replace_block(block), move |_| done.emit(()));
             }
         }

@@ -92,7 +92,7 @@ pub(super) fn filter(
     let all = std::iter::once(("".into(), tr!("history.all_blocks")));
     let names = blocks
         .iter()
-        .map(|it| (AttrValue::from(String::from(it.id)), AttrValue::from(it.config.name.clone())));
+        .map(|it| (AttrValue::from(String::from(it.id)), AttrValue::from(it.config.name().to_owned())));
     let spans: Vec<_> =
         Span::ALL.iter().map(|span| (span.minutes().to_string().into(), span.words())).collect();
     let results = [

@@ -22,7 +22,7 @@ pub(super) fn run(run: &HistoryRun, blocks: &[Block]) -> Html {
     let name = blocks
         .iter()
         .find(|block| block.id == run.block)
-        .map_or_else(|| run.block.to_string(), |block| block.config.name.clone());
+        .map_or_else(|| run.block.to_string(), |block| block.config.name().to_owned());
     let (class, shape, words) = if run.q {
         ("state tick", Shape::Tick, tr!("phase.done").to_string())
     } else {

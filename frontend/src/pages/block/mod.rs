@@ -38,7 +38,8 @@ use crate::{
     kit::{state_mark, status_bits},
     net::session,
     pages::connection::StaleNote,
-    store::DeckId,
+    route,
+    store::{DeckId, Row},
 };
 
 pub(crate) use self::{
@@ -65,15 +66,16 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
     exchange::use_exchange(id, row.as_ref().map_or(0, |row| row.status.runs));
     let online = bench.relay().is_online();
     let config = row.as_ref().map(|row| (row.config.clone(), row.revision));
-    let known = row.as_ref().and_then(|row| bench.relay().targets().profile(&row.config.target_cfg.path));
+    let known = row.as_ref().and_then(|row| bench.relay().targets().profile(row.config.target_text()));
     let subject = use_memo((id, config, draft, online, known, session::view()), {
         let bench = bench.clone();
         move |_| Subject::of(&bench, id)
     });
     let edit = use_callback((bench, id), |edit, (bench, id)| bench.edit(*id, edit));
-    let Some((row, subject)) = row.zip((*subject).clone()) else { return html! {} };
+    let Some(row) = row else { return html! {} };
+    let Some(subject) = (*subject).clone() else { return elsewhere(&row) };
     let subject = Rc::new(subject);
-    let repeats = row.status.input && row.config.ctrl_cfg.trigger_type != 0;
+    let repeats = row.status.input && subject.is_cyclic();
     // The bytes of a block that repeats are always a moment old.
     let earlier = !repeats && row.exchange.as_ref().is_some_and(|exchange| is_earlier(exchange, &row.status));
     html! {
@@ -99,5 +101,15 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
                 <Exchange subject={subject.clone()} exchange={row.exchange.clone()} {earlier} has_run={row.status.runs > 0} />
             </section>
         </article>
+    }
+}
+
+/// A block that this document does not edit: the way to the one that does.
+fn elsewhere(row: &Row) -> Html {
+    html! {
+        <div class="empty">
+            <h1>{ row.config.name() }</h1>
+            <p>{ route::block_link(row, html! { row.config.kind() }) }</p>
+        </div>
     }
 }

@@ -67,7 +67,8 @@ fn conflict(bench: &Workbench, id: DeckId, mine: &Subject, current: &Rc<Block>) 
             bench.revert(id);
         }
     };
-    let rows = differences(&mine.draft.config, &current.config);
+    let rows =
+        current.config.as_msg().map(|theirs| differences(&mine.draft.config, theirs)).unwrap_or_default();
     html! {
         <div class="notice conflict" role="alert" data-test="conflict">
             <p>{ tr!("conflict.text", revision = current.revision) }</p>

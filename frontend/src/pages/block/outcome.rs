@@ -39,7 +39,7 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
                 </span>
             </h2>
             if status.phase == Phase::Failed {
-                { trouble(status, &row.config.target_cfg.path) }
+                { trouble(status, row.config.target_text()) }
             }
             if let Some((_, it)) = row.written.as_ref().filter(|(runs, _)| *runs == status.runs) {
                 { written(it) }

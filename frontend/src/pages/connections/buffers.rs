@@ -76,7 +76,7 @@ fn buffer(number: usize, busy: Option<&Busy>, queue: &Queue) -> Html {
 }
 
 fn waiting(busy: &Busy, line: &Line) -> Html {
-    let holders: Vec<_> = line.buffers.iter().flatten().map(|busy| busy.row.config.name.as_str()).collect();
+    let holders: Vec<_> = line.buffers.iter().flatten().map(|busy| busy.row.config.name()).collect();
     html! {
         <li key={busy.row.id.to_string()} class="queued">
             { name(busy) }
@@ -88,7 +88,7 @@ fn waiting(busy: &Busy, line: &Line) -> Html {
 }
 
 fn name(busy: &Busy) -> Html {
-    link(Route::Block(busy.row.id), "", html! { &busy.row.config.name })
+    link(Route::Block(busy.row.id), "", html! { busy.row.config.name() })
 }
 
 /// `for 3 s`: since its phase has changed.
@@ -99,7 +99,7 @@ fn since(busy: &Busy) -> AttrValue {
 
 /// What it waits for.
 fn reason(busy: &Busy, queue: &Queue) -> AttrValue {
-    let other = queue.busy_with(busy).map(|other| &other.row.config.name);
+    let other = queue.busy_with(busy).map(|other| other.row.config.name());
     match (busy.row.status.phase, other) {
         (Phase::Sent, _) => tr!("connections.sent"),
         (Phase::Connecting, _) => tr!("connections.connecting"),

@@ -31,7 +31,7 @@ pub(crate) fn Down() -> Html {
 pub(super) fn by_target(rows: &RowStore) -> Shelf<String, Vec<Rc<Row>>> {
     let mut blocks: Shelf<String, Vec<Rc<Row>>> = Shelf::default();
     for row in rows.ids().iter().filter_map(|id| rows.row(*id)) {
-        if let Some(target) = target_of(&row.config.target_cfg.path) {
+        if let Some(target) = target_of(row.config.target_text()) {
             blocks.or_default(target).push(row);
         }
     }
@@ -76,7 +76,7 @@ pub(super) fn advice(error: &Cause) -> String {
 /// Links to blocks.
 pub(super) fn names(blocks: &[Rc<Row>]) -> Html {
     let name =
-        |row: &Rc<Row>| html! { <li>{ link(Route::Block(row.id), "", html! { &row.config.name }) }</li> };
+        |row: &Rc<Row>| html! { <li>{ link(Route::Block(row.id), "", html! { row.config.name() }) }</li> };
     html! { <>
         <ul class="block-names">{ for blocks.iter().take(MOST).map(name) }</ul>
         if blocks.len() > MOST {

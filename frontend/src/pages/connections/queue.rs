@@ -46,17 +46,17 @@ impl Queue {
         let mut holders: Shelf<Channel, Vec<Busy>> = Shelf::default();
         channels.insert(Channel::Controller, Line::default());
         for row in rows {
-            let line = channels.or_default(row.config.channel);
+            let line = channels.or_default(row.config.channel());
             if !row.status.phase.is_busy() {
                 continue;
             }
-            let target = target_of(&row.config.target_cfg.path).unwrap_or_default();
+            let target = target_of(row.config.target_text()).unwrap_or_default();
             let busy = Busy { row: row.clone(), target };
             if row.status.phase == Phase::Waiting {
                 let after = |other: &Busy| other.row.status.position <= row.status.position;
                 line.waiting.insert(line.waiting.partition_point(after), busy);
             } else {
-                holders.or_default(row.config.channel).push(busy);
+                holders.or_default(row.config.channel()).push(busy);
             }
         }
         let mut queue = Self::default();
@@ -116,7 +116,7 @@ mod tests {
     fn row(id: u32, path: &str, phase: Phase, position: usize) -> Rc<Row> {
         let view = BlockView { phase, position, ..BlockView::default() };
         let status = Rc::new(BlockStatus::new(BlockId(id), &view, None, None));
-        let config = Rc::new(MsgCipGeneric::product_name(path));
+        let config = Rc::new(MsgCipGeneric::product_name(path).into());
         let id = DeckId::Stored(BlockId(id));
         Rc::new(Row { id, revision: 1, config, status, trace: Rc::default(), exchange: None, written: None })
     }

@@ -87,7 +87,7 @@ pub(super) fn Question(props: &QuestionProps) -> Html {
 }
 
 fn body(asked: Asked, bench: &Workbench, node: &NodeRef, said: Option<AttrValue>) -> Html {
-    let name = |id| bench.draft(id).map(|draft| draft.config.name).unwrap_or_default();
+    let name = |id| bench.name(id);
     match asked {
         Asked::Rename(id) => html! { <>
             <label for="rename-name">{ tr!("rename.name") }</label>
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn a_block_from_a_relay_is_pasted_without_its_id() {
         let config = MsgCipGeneric::product_name("0,0");
-        let block = Block { id: BlockId(7), revision: 3, config: config.clone() };
+        let block = Block { id: BlockId(7), revision: 3, config: config.clone().into() };
         assert_eq!(read(&serde_json::to_string(&block).unwrap()), Ok(config));
     }
 

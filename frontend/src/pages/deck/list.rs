@@ -13,7 +13,7 @@ use crate::{
     i18n::tr,
     kit::state_mark,
     net::session,
-    route::{self, Route, link},
+    route::{self, Route},
     store::DeckId,
 };
 
@@ -107,15 +107,17 @@ fn Entry(props: &EntryProps) -> Html {
     let bench = use_workbench();
     let (row, draft) = (use_row(props.id), use_draft(props.id));
     let Some(row) = row else { return html! {} };
-    let config = draft.as_ref().map_or(&*row.config, |draft| &draft.config);
-    if !browser::is_found(&props.filter, config) {
+    let texts = draft.as_ref().map_or([row.config.name(), row.config.target_text()], |draft| {
+        [&draft.config.name, &draft.config.target_cfg.path]
+    });
+    if !browser::is_found(&props.filter, texts) {
         return html! {};
     }
     html! {
         <li class={classes!("entry", props.chosen.then_some("chosen"))} data-test="entry">
-            { link(Route::Block(props.id), "", html! { <>
+            { route::block_link(&row, html! { <>
                 { state_mark(row.status.phase, true) }
-                <span class="entry-name">{ &config.name }</span>
+                <span class="entry-name">{ texts[0] }</span>
                 if bench.is_unsaved(props.id) {
                     <span class="entry-draft">{ tr!("list.unsaved") }</span>
                 }

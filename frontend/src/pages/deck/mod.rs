@@ -31,7 +31,7 @@ pub struct DeckPageProps {
 pub fn DeckPage(props: &DeckPageProps) -> Html {
     let bench = use_workbench();
     let ids = use_ids();
-    let name = props.id.and_then(|id| bench.draft(id)).map(|draft| draft.config.name);
+    let name = props.id.map(|id| bench.name(id));
     use_title(&name.unwrap_or_default());
     // Renders again when it is known whether there is a relay.
     use_link();

@@ -78,6 +78,9 @@ fn found(rows: &RowStore, ids: &Rc<[DeckId]>, filter: &str) -> Rc<[DeckId]> {
     if filter.trim().is_empty() {
         return ids.clone();
     }
-    let is_found = |id: &DeckId| rows.row(*id).is_some_and(|row| browser::is_found(filter, &row.config));
+    let is_found = |id: &DeckId| {
+        rows.row(*id)
+            .is_some_and(|row| browser::is_found(filter, [row.config.name(), row.config.target_text()]))
+    };
     ids.iter().copied().filter(is_found).collect()
 }

@@ -11,7 +11,7 @@ use crate::{
     i18n::tr,
     kit::state_mark,
     pages::block::{age_words, decode, duration, error_words},
-    route::{Route, link},
+    route,
     store::{DeckId, Row, target_of},
 };
 
@@ -32,7 +32,7 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
     let Some(row) = row else { return html! {} };
     let status = &row.status;
     let reply = status.reply_us.map(duration).unwrap_or_default();
-    let target = target_of(&row.config.target_cfg.path).unwrap_or_default();
+    let target = target_of(row.config.target_text()).unwrap_or_default();
     let told_above = status.status.error_id != REFUSED && props.down.iter().any(|down| **down == *target);
     let error = match (status.status.error, told_above) {
         (false, _) => String::new(),
@@ -44,9 +44,9 @@ pub(super) fn MonitorRow(props: &MonitorRowProps) -> Html {
         <tr aria-rowindex={props.index.to_string()} data-test="monitor-row" data-block={props.id.to_string()}>
             <td class="col-state">{ state_mark(status.phase, false) }</td>
             <th scope="row" class="col-name">
-                { link(Route::Block(props.id), "", html! { &row.config.name }) }
+                { route::block_link(&row, html! { row.config.name() }) }
             </th>
-            <td class="col-target mono">{ &row.config.target_cfg.path }</td>
+            <td class="col-target mono">{ row.config.target_text() }</td>
             <td class={classes!("col-value", (!status.q).then_some("stale"))}>{ value(&row) }</td>
             <td class="col-age">{ age.unwrap_or_default() }</td>
             <td class="col-runs">{ status.runs }</td>

@@ -19,7 +19,7 @@ fn store() -> (RowStore, Rc<dyn Fn() -> usize>) {
 }
 
 fn block(number: u32, revision: u64, path: &str) -> Block {
-    Block { id: BlockId(number), revision, config: MsgCipGeneric::product_name(path) }
+    Block { id: BlockId(number), revision, config: MsgCipGeneric::product_name(path).into() }
 }
 
 fn status(number: u32, runs: u64) -> BlockStatus {
@@ -67,7 +67,7 @@ fn an_answer_that_was_overtaken_does_not_bring_back_an_older_revision() {
     store.put_stored(block(1, 3, "4,10.0.0.3"));
     store.put_stored(block(1, 2, "4,10.0.0.2"));
     let row = store.row(DeckId::Stored(BlockId(1))).unwrap();
-    assert_eq!((row.revision, row.config.target_cfg.path.as_str()), (3, "4,10.0.0.3"));
+    assert_eq!((row.revision, row.config.target_text()), (3, "4,10.0.0.3"));
 }
 
 #[test]

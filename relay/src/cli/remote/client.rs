@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use cipdeck_shared::api::{BlockStatus, ExchangeView, Problem, RunRequest, WriteRequest, WriteTicket};
-use cipdeck_shared::config::{Block, MsgCipGeneric};
+use cipdeck_shared::config::{Block, BlockConfig};
 use reqwest::{Method, RequestBuilder, Url, redirect};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -77,7 +77,7 @@ impl Client {
     }
 
     /// Stores a block.
-    pub(super) async fn create(&self, config: &MsgCipGeneric) -> Result<Block, Failed> {
+    pub(super) async fn create(&self, config: &BlockConfig) -> Result<Block, Failed> {
         self.json(self.with(Method::POST, "blocks", config)).await
     }
 

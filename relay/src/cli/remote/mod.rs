@@ -6,7 +6,7 @@ mod trust;
 use std::path::PathBuf;
 
 use cipdeck_shared::api::{BlockStatus, WriteTicket};
-use cipdeck_shared::config::{Block, MsgCipGeneric, read_hex};
+use cipdeck_shared::config::{Block, BlockConfig, read_hex};
 use cipdeck_shared::plan::MessagePlan;
 use clap::Args;
 
@@ -37,7 +37,7 @@ impl Remote {
     }
 
     /// Stores the block, runs it, and deletes it again, whatever happens in between.
-    pub(super) async fn run(&self, config: &MsgCipGeneric, mode: &Mode) -> Exit {
+    pub(super) async fn run(&self, config: &BlockConfig, mode: &Mode) -> Exit {
         if mode.records() {
             return Exit::usage(
                 &"--pcap records what goes over the sockets of this machine: leave out --relay",

@@ -91,7 +91,11 @@ impl Page {
     }
 
     async fn create(&self, config: MsgCipGeneric) -> BlockId {
-        self.blocks.create(&self.actor, Draft { id: None, revision: None, config }).await.unwrap().id
+        self.blocks
+            .create(&self.actor, Draft { id: None, revision: None, config: config.into() })
+            .await
+            .unwrap()
+            .id
     }
 
     async fn problem(&mut self) -> (String, ProblemCode) {
@@ -195,7 +199,7 @@ async fn a_viewer_hears_of_the_write_window_and_cannot_command() {
 }
 
 fn draft() -> Draft {
-    Draft { id: None, revision: None, config: MsgCipGeneric::product_name("0,0") }
+    Draft { id: None, revision: None, config: MsgCipGeneric::product_name("0,0").into() }
 }
 
 #[tokio::test]
