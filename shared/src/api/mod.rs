@@ -7,6 +7,7 @@ mod devices;
 mod discovery;
 mod history;
 mod live;
+mod project;
 mod rest;
 mod secret;
 mod status;
@@ -33,6 +34,7 @@ pub use self::live::{
     DeviceHealth, DeviceIdentity, DeviceLoad, DeviceStatus, HealthState, LIVE_PROTOCOL, LiveClientMessage,
     LiveServerMessage, Quality, VariableValue,
 };
+pub use self::project::{ProjectChange, ProjectImport, ProjectPart, ProjectPartKind};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, Ready, RunRequest,
     findings,

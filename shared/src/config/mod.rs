@@ -15,6 +15,7 @@ mod number;
 mod plant_id;
 mod plc_address;
 mod profile;
+pub mod project;
 mod send_req;
 mod target_path;
 mod variable;
