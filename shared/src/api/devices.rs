@@ -228,6 +228,7 @@ pub fn plant_findings(findings: &[PlantFinding]) -> Vec<Finding> {
             max,
             error_id: None,
             sub_error_id: None,
+            communication_report: None,
         }
     };
     findings.iter().map(finding).collect()

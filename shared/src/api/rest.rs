@@ -95,6 +95,9 @@ pub struct Finding {
     /// What the controller would give.
     #[serde(rename = "SubErrorID", default, skip_serializing_if = "Option::is_none")]
     pub sub_error_id: Option<u16>,
+    /// What a SEND_REQ or DATA_EXCH would give.
+    #[serde(rename = "Communication_Report", default, skip_serializing_if = "Option::is_none")]
+    pub communication_report: Option<u8>,
 }
 
 impl From<&plan::Finding> for Finding {
@@ -113,6 +116,7 @@ impl From<&plan::Finding> for Finding {
             max,
             error_id: ids.map(|(error_id, _)| error_id),
             sub_error_id: ids.and_then(|(_, sub_error_id)| sub_error_id),
+            communication_report: finding.communication_report(),
         }
     }
 }

@@ -66,6 +66,11 @@ pub enum Host {
 }
 
 impl Endpoint {
+    /// An address at the port that a controller uses.
+    pub const fn of_ip(ip: [u8; 4]) -> Self {
+        Self { host: Host::Ip(ip), port: DEFAULT_TCP_PORT }
+    }
+
     /// Whether the path gave a TCP port of its own.
     pub const fn has_unusual_port(&self) -> bool {
         self.port != DEFAULT_TCP_PORT

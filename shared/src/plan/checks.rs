@@ -27,16 +27,20 @@ pub(super) struct Checks {
 
 impl Checks {
     pub(super) fn block(&mut self, config: &MsgCipGeneric) {
-        if config.name.trim().is_empty() {
-            self.error(Field::Name, Rule::Missing);
-        }
-        if config.name.chars().count() > MAX_NAME {
-            self.error(Field::Name, Rule::TextTooLong { max: MAX_NAME });
-        }
+        self.name(&config.name);
         if config.kind != MSG_CIPGENERIC {
             self.error(Field::Kind, Rule::UnknownKind);
         }
         self.unknown("", &config.extra);
+    }
+
+    pub(super) fn name(&mut self, name: &str) {
+        if name.trim().is_empty() {
+            self.error(Field::Name, Rule::Missing);
+        }
+        if name.chars().count() > MAX_NAME {
+            self.error(Field::Name, Rule::TextTooLong { max: MAX_NAME });
+        }
     }
 
     pub(super) fn ctrl_cfg(&mut self, cfg: &CipControlCfg) -> Option<TriggerType> {
@@ -52,11 +56,7 @@ impl Checks {
         if period > 255 {
             self.note(Field::TriggerType, Rule::OverUsint);
         }
-        Some(match period {
-            0 => TriggerType::Once,
-            1 => TriggerType::Fast,
-            period => TriggerType::Every(period),
-        })
+        Some(TriggerType::of(period))
     }
 
     pub(super) fn app_cfg(&mut self, cfg: &CipAppCfg) -> Option<App> {
@@ -110,8 +110,8 @@ impl Checks {
         })
     }
 
-    pub(super) fn keep_alive(&mut self, config: &MsgCipGeneric) -> Option<u32> {
-        self.timeout(Field::KeepAlive, config.keep_alive, KEEP_ALIVE)
+    pub(super) fn keep_alive(&mut self, ms: i64) -> Option<u32> {
+        self.timeout(Field::KeepAlive, ms, KEEP_ALIVE)
     }
 
     fn path(&mut self, text: &str, profile: Profile) -> Option<TargetPath> {
@@ -195,15 +195,15 @@ impl Checks {
         }
     }
 
-    fn layout(&mut self, field: Field, text: &str) -> Option<DataFields> {
+    pub(super) fn layout(&mut self, field: Field, text: &str) -> Option<DataFields> {
         if text.trim().is_empty() {
             return None;
         }
         DataFields::read(text).map_err(|error| self.error(field, Rule::Layout(error))).ok()
     }
 
-    pub(super) fn resume(&mut self, config: &MsgCipGeneric, access: Option<Access>) {
-        if config.resume && access.is_some_and(|access| access != Access::Read) {
+    pub(super) fn resume(&mut self, resume: bool, access: Option<Access>) {
+        if resume && access.is_some_and(|access| access != Access::Read) {
             self.error(Field::Resume, Rule::ResumeNeedsRead);
         }
     }
@@ -229,7 +229,13 @@ impl Checks {
         }
     }
 
-    fn number<T: TryFrom<i64>>(&mut self, field: Field, value: i64, min: i64, max: i64) -> Option<T> {
+    pub(super) fn number<T: TryFrom<i64>>(
+        &mut self,
+        field: Field,
+        value: i64,
+        min: i64,
+        max: i64,
+    ) -> Option<T> {
         let number = (min..=max).contains(&value).then_some(value).and_then(|value| T::try_from(value).ok());
         if number.is_none() {
             self.error(field, Rule::OutOfRange { value, min, max });
@@ -237,21 +243,21 @@ impl Checks {
         number
     }
 
-    fn unknown(&mut self, prefix: &str, extra: &Extra) {
+    pub(super) fn unknown(&mut self, prefix: &str, extra: &Extra) {
         for name in extra.keys() {
             self.warning(Field::Unknown(prefix.to_string() + name), Rule::UnknownMember);
         }
     }
 
-    fn error(&mut self, field: Field, rule: Rule) {
+    pub(super) fn error(&mut self, field: Field, rule: Rule) {
         self.findings.push(Finding { field, severity: Severity::Error, rule });
     }
 
-    fn warning(&mut self, field: Field, rule: Rule) {
+    pub(super) fn warning(&mut self, field: Field, rule: Rule) {
         self.findings.push(Finding { field, severity: Severity::Warning, rule });
     }
 
-    fn note(&mut self, field: Field, rule: Rule) {
+    pub(super) fn note(&mut self, field: Field, rule: Rule) {
         self.findings.push(Finding { field, severity: Severity::Note, rule });
     }
 }

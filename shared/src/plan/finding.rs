@@ -185,4 +185,20 @@ impl Finding {
         };
         Some((33, Some(sub)))
     }
+
+    /// The communication report that a SEND_REQ or DATA_EXCH would give, as far as that is known. Control Expert help
+    /// D-NA-0014195; which check gives which code is inferred.
+    pub const fn communication_report(&self) -> Option<u8> {
+        if !matches!(self.severity, Severity::Error) {
+            return None;
+        }
+        match (&self.field, &self.rule) {
+            (_, Rule::Words(said)) => said.report,
+            (Field::Address, _) => Some(0x03),
+            (Field::ManagementParam(3), _) | (Field::DataToSend, Rule::TooMuchData { .. }) => Some(0x0E),
+            (Field::ManagementParam(_) | Field::ManagementParams, _) => Some(0x05),
+            (Field::DataToSend, _) => Some(0x06),
+            _ => None,
+        }
+    }
 }

@@ -31,3 +31,9 @@ pub const KEEP_ALIVE: TimeoutRange = TimeoutRange { default: 0, min: 1_000, max:
 
 /// `ConnMsgTimeout`. Document 13032001 on Micro800 CIP messages, CIPTARGETCFG.
 pub const CONN_MSG_TIMEOUT: TimeoutRange = TimeoutRange { default: 10_000, min: 800, max: 10_000 };
+
+/// A timeout that never comes: `Management_Param[2]` 0. Control Expert help D-SE-0006482.
+pub const FOR_EVER: u32 = u32::MAX;
+
+/// Words of `Received_Data`: service and status, up to 1 KiB. Our own limits.
+pub const RECEIVED_WORDS: core::ops::RangeInclusive<i64> = 2..=512;

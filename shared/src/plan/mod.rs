@@ -9,7 +9,7 @@ mod reader;
 mod routed;
 mod rule;
 mod tag_way;
-mod words;
+pub mod words;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -23,8 +23,9 @@ pub use self::effect::{Effect, effects};
 pub use self::finding::{Field, Finding, Severity};
 pub use self::routed::Routed;
 use self::routed::Routes;
-pub use self::rule::Rule;
+pub use self::rule::{Rule, Said};
 pub use self::tag_way::TagWay;
+use self::words::WordsPlan;
 
 /// A message that can be sent. Exists only for a configuration without errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,12 +43,15 @@ pub struct MessagePlan {
     res_data_size: u16,
     effects: Arc<[Effect]>,
     resume: bool,
+    /// Of a SEND_REQ or DATA_EXCH.
+    words: Option<Arc<WordsPlan>>,
 }
 
 /// A message over a class 3 connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConnectionPlan {
     /// `ConnMsgTimeout` in ms, already in its range: from sending to the reply, and how long an idle connection stays.
+    /// [`FOR_EVER`](limits::FOR_EVER) is no limit for the reply.
     pub timeout_ms: u32,
     /// `ConnClose`: the connection is closed when the message completes.
     pub close: bool,
@@ -69,6 +73,16 @@ pub enum TriggerType {
     Fast,
     /// Start to start, in ms: 2..=65535.
     Every(u16),
+}
+
+impl TriggerType {
+    const fn of(period: u16) -> Self {
+        match period {
+            0 => Self::Once,
+            1 => Self::Fast,
+            period => Self::Every(period),
+        }
+    }
 }
 
 impl MessagePlan {
@@ -96,14 +110,14 @@ impl MessagePlan {
         let trigger = checks.ctrl_cfg(&config.ctrl_cfg);
         let app = checks.app_cfg(&config.app_cfg);
         let target = checks.target_cfg(&config.target_cfg, config.profile);
-        let keep_alive = checks.keep_alive(config);
+        let keep_alive = checks.keep_alive(config.keep_alive);
         let data = checks.request_data(config);
         let res_data_size = checks.res_data_size(config);
         let alone = app.as_ref().map(|app| table::classify(app.service, app.class));
         let request = app.zip(data).and_then(|(app, data)| checks.request(app.service, app.path(), data));
         let effects: Option<Arc<[Effect]>> = request.as_ref().map(|request| effects(&request.bytes()).into());
         // While the data cannot be read, the service alone tells.
-        checks.resume(config, effects.as_deref().map(access_of).or(alone));
+        checks.resume(config.resume, effects.as_deref().map(access_of).or(alone));
         let plan = || {
             let TargetPlan { path, ucmm_timeout_ms, connection } = target?;
             let request = request?;
@@ -122,6 +136,7 @@ impl MessagePlan {
                 res_data_size: res_data_size?,
                 effects: effects?,
                 resume: config.resume,
+                words: None,
             })
         };
         let plan = plan();
@@ -190,14 +205,24 @@ impl MessagePlan {
         self.trigger
     }
 
-    /// ms, already in its range.
+    /// ms, already in its range; [`FOR_EVER`](limits::FOR_EVER) is no limit.
     pub const fn ucmm_timeout_ms(&self) -> u32 {
         self.ucmm_timeout_ms
     }
 
-    /// Bytes that `ResData` holds: 1..=490; more for a message about tags.
-    pub const fn res_data_size(&self) -> u16 {
-        self.res_data_size
+    /// Bytes of data that the block holds of a reply with so many words of additional status: 1..=490; more for a
+    /// message about tags.
+    pub const fn res_data_size(&self, additional: u16) -> u16 {
+        match self.words {
+            // Received_Data holds the whole reply.
+            Some(_) => self.res_data_size.saturating_sub(additional.saturating_mul(2)),
+            None => self.res_data_size,
+        }
+    }
+
+    /// What a SEND_REQ or DATA_EXCH is made of.
+    pub const fn words(&self) -> Option<&Arc<WordsPlan>> {
+        self.words.as_ref()
     }
 
     /// Whether it reads, writes, or nobody knows: the worst of [`MessagePlan::effects`].

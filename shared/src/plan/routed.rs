@@ -54,6 +54,11 @@ impl Routes {
         Ok(Self { typed: Routed::new(request, route.clone(), timeout_ms)?, trimmed: trimmed.transpose()? })
     }
 
+    /// Without a route: the bytes as they are.
+    pub(super) fn direct(message: Vec<u8>) -> Self {
+        Self { typed: Routed { route: Epath::default(), message }, trimmed: None }
+    }
+
     pub(super) const fn differ(&self) -> bool {
         self.trimmed.is_some()
     }

@@ -107,11 +107,24 @@ pub enum Rule {
         /// Bytes in `ReqData`.
         length: usize,
     },
+    /// What is wrong with the words of a SEND_REQ or DATA_EXCH.
+    Words(Said),
+}
+
+/// A finding about words. It is put into words where it is found, so that a page without such blocks has none of its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// The stable name in JSON.
+    pub name: &'static str,
+    /// English.
+    pub text: String,
+    /// The communication report that the controller would give, as far as that is known.
+    pub report: Option<u8>,
 }
 
 impl Rule {
     /// Every key that [`Self::key`] can return: the page has a text for each.
-    pub const KEYS: [&'static str; 34] = [
+    pub const KEYS: [&'static str; 35] = [
         "out_of_range",
         "missing",
         "text_too_long",
@@ -145,12 +158,16 @@ impl Rule {
         "conn_close_unconnected",
         "layout",
         "layout_length",
+        "words",
         "unreadable_number",
     ];
 
     /// The rule's stable name in JSON.
     pub const fn name(&self) -> &'static str {
-        self.key()
+        match self {
+            Self::Words(said) => said.name,
+            rule => rule.key(),
+        }
     }
 
     /// The key of the rule's text.
@@ -191,6 +208,7 @@ impl Rule {
             Self::ConnCloseUnconnected => "conn_close_unconnected",
             Self::Layout(_) => "layout",
             Self::LayoutLength { .. } => "layout_length",
+            Self::Words(_) => "words",
         }
     }
 
@@ -225,6 +243,7 @@ impl Rule {
             Self::LayoutLength { layout, length } => {
                 (Some(("layout", layout.to_string())), Some(("length", length.to_string())), None)
             }
+            Self::Words(said) => (Some(("why", said.text.clone())), None, None),
             _ => (None, None, None),
         };
         [first, second, third].into_iter().flatten().collect()
@@ -237,7 +256,7 @@ impl fmt::Display for Rule {
             Self::OutOfRange { value, min, max } => write!(f, "{value} is outside {min} to {max}"),
             Self::Missing => f.write_str("must not be empty"),
             Self::TextTooLong { max } => write!(f, "at most {max} characters"),
-            Self::UnknownKind => f.write_str("this version knows MSG_CIPGENERIC only"),
+            Self::UnknownKind => f.write_str("this version knows MSG_CIPGENERIC, SEND_REQ and DATA_EXCH"),
             Self::UnknownMember => f.write_str("unknown member: kept, but not used"),
             Self::Path(error) => f.write_str(path_text(*error)),
             Self::TcpPort { port } => write!(f, "TCP port {port}: a controller always uses 44818"),
@@ -277,6 +296,7 @@ impl fmt::Display for Rule {
             Self::LayoutLength { layout, length } => {
                 write!(f, "the layout has {layout} bytes, ReqData has {length}")
             }
+            Self::Words(said) => f.write_str(&said.text),
         }
     }
 }

@@ -40,6 +40,7 @@ impl MessagePlan {
             keep_alive_ms: 0,
             res_data_size: u16::MAX,
             resume: false,
+            words: None,
         })
     }
 }

@@ -31,7 +31,7 @@ fn the_first_message_has_no_finding() {
     assert_eq!(findings, []);
     let plan = plan.unwrap();
     assert_eq!(plan.request().bytes(), hex!("0E 03 20 01 24 01 30 07"));
-    assert_eq!((plan.ucmm_timeout_ms(), plan.res_data_size()), (3000, 490));
+    assert_eq!((plan.ucmm_timeout_ms(), plan.res_data_size(0)), (3000, 490));
     assert_eq!((plan.access(), plan.trigger()), (Access::Read, TriggerType::Once));
 }
 

@@ -13,6 +13,8 @@ open_enum! {
         ConnectionManager = 0x06,
         /// Parameter object of the specification.
         Parameter = 0x0F,
+        /// Registers and coils of Modbus devices.
+        Modbus = 0x44,
         /// Tag names of Logix controllers.
         Symbol = 0x6B,
         /// Structures of Logix controllers, types of variables of Omron's.

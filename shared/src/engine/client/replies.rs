@@ -137,7 +137,9 @@ impl Client {
         self.last_message = cx.now;
         let input = match reply.decode() {
             Ok(answer) if answer.service == asked && answer.status == GeneralStatus::Success => {
-                Ok(Input::Succeeded { data: answer.data.to_vec(), size: job.plan.res_data_size() })
+                let additional = u16::try_from(answer.additional.words().len()).unwrap_or(u16::MAX);
+                let size = job.plan.res_data_size(additional);
+                Ok(Input::Succeeded { data: answer.data.to_vec(), size })
             }
             Ok(answer) if answer.service == asked => {
                 let words = answer.additional.words().collect();
