@@ -22,7 +22,7 @@ pub(crate) fn found(ended: &Ended, layout: &str) -> Result<ReadValue, String> {
 
 /// What a write will leave behind: its data as the read would find it.
 pub(crate) fn wanted(reader: &MessagePlan, write: &MessagePlan, layout: &str) -> Option<ReadValue> {
-    let data = write.request().data();
+    let data = write.written();
     let service = reader.bytes().first()? | 0x80;
     let reply = [&[service, 0, 0, 0], data].concat();
     Some(value(reader.bytes(), &reply, data, layout))

@@ -76,7 +76,8 @@ fn planned(config: &SendReq, mut checks: Checks) -> (Option<MessagePlan>, Checks
     let plan = || {
         let (message, management) = (message?, management?);
         let (target, connected) = message.way(address?)?;
-        let timeout_ms = management.timeout_ms?;
+        let timeout_ms =
+            Some(management.timeout?).filter(|tenths| *tenths != 0).map(|tenths| u32::from(tenths) * 100);
         let request = MessageRouterRequest::decode(&message.bytes).ok()?;
         let (length, received_words) = (management.length?, received?);
         let words = WordsPlan { form, words: message.words, length, timeout_ms, connected, received_words };

@@ -252,6 +252,7 @@ fn wrong(why: impl Into<String>) -> ApiError {
         max: None,
         error_id: None,
         sub_error_id: None,
+        communication_report: None,
     };
     ApiError::Findings(vec![finding])
 }

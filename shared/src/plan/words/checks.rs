@@ -116,8 +116,8 @@ fn remarks(checks: &mut Checks, address: &PlcAddress, form: SendReqForm) {
 
 /// `Management_Param`: what its words say, each if it can be used.
 pub(super) struct Management {
-    /// ms; `Some(None)` = for ever.
-    pub(super) timeout_ms: Option<Option<u32>>,
+    /// x 100 ms; 0 = for ever.
+    pub(super) timeout: Option<u16>,
     pub(super) length: Option<u16>,
 }
 
@@ -143,8 +143,7 @@ pub(super) fn management(checks: &mut Checks, config: &SendReq) -> Option<Manage
         checks.error(Field::ManagementParams, WordsRule::ManagementCount(given.len()).into());
         return None;
     }
-    let timeout_ms = timeout.map(|word| (word != 0).then_some(u32::from(word) * 100));
-    Some(Management { timeout_ms, length: length.filter(|length| *length != 0) })
+    Some(Management { timeout, length: length.filter(|length| *length != 0) })
 }
 
 pub(super) fn received(checks: &mut Checks, config: &SendReq) -> Option<u16> {
