@@ -4,7 +4,8 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use core::fmt;
 
-use super::{BlockConfig, Code};
+use super::Code;
+use crate::config::BlockConfig;
 
 /// One member that is not carried as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,6 +66,18 @@ pub enum Why {
     ConnectedOnly,
     /// Its data is limited to so many bytes.
     DataLimit(usize),
+    /// Whole words hold half a word, too.
+    WholeWords,
+    /// Where the communication module is belongs to the controller's project.
+    ModulePlace,
+    /// It cannot go through another station.
+    NoBridge,
+    /// Its path is made of other segments.
+    OtherSegments,
+    /// It goes to another device.
+    OtherDevice,
+    /// It is not in use for this message.
+    Unused,
     /// Its name is made of other characters.
     NameCharacters,
     /// The program around the block does it.
@@ -138,6 +151,12 @@ impl Why {
             Self::UnconnectedOnly => "unconnected_only",
             Self::ConnectedOnly => "connected_only",
             Self::DataLimit(_) => "data_limit",
+            Self::WholeWords => "whole_words",
+            Self::ModulePlace => "module_place",
+            Self::NoBridge => "no_bridge",
+            Self::OtherSegments => "other_segments",
+            Self::OtherDevice => "other_device",
+            Self::Unused => "unused",
             Self::NameCharacters => "name_characters",
             Self::ProgramDoes => "program_does",
             Self::OursAlone => "ours_alone",
@@ -166,6 +185,15 @@ impl fmt::Display for Why {
             Self::UnconnectedOnly => "there are no class 3 connections there; it is sent unconnected",
             Self::ConnectedOnly => "it is sent over a connection there",
             Self::DataLimit(limit) => return write!(f, "data has at most {limit} bytes there"),
+            Self::WholeWords => "sizes are whole words there; the larger one is taken",
+            Self::ModulePlace => {
+                "rack, module and channel say where the communication module is; check them against the configuration of \
+                 the controller"
+            }
+            Self::NoBridge => "there is no way through another station there; the message goes straight to the device",
+            Self::OtherSegments => "a path there is class, instance, attribute and members in this order",
+            Self::OtherDevice => "it goes to another device: correct the address",
+            Self::Unused => "it is not in use for this message",
             Self::NameCharacters => "names are made of other characters there",
             Self::ProgramDoes => "the program around the block has to do it",
             Self::OursAlone => "it is a setting of cipdeck; a controller has nothing like it",

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use super::BlockConfig;
+use crate::config::{BlockConfig, SendReqForm};
 
 /// A language that blocks are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -135,22 +135,29 @@ impl Dialect {
 }
 
 impl Kind {
+    /// How its words are laid out, if it is made of words.
+    pub const fn form(self) -> Option<SendReqForm> {
+        match self {
+            Self::MsgCipGeneric => None,
+            Self::SendReqEtc100 => Some(SendReqForm::Etc100),
+            Self::SendReqEtc101 => Some(SendReqForm::Etc101),
+            Self::DataExch => Some(SendReqForm::DataExch),
+        }
+    }
+
     /// All of them.
     pub const ALL: [Self; 4] =
         [Self::MsgCipGeneric, Self::SendReqEtc100, Self::SendReqEtc101, Self::DataExch];
 
     /// What a block is.
     pub fn of(block: &BlockConfig) -> Self {
-        use super::aside::SendReqDialect;
         match block {
             BlockConfig::MsgCipGeneric(_) => Self::MsgCipGeneric,
-            BlockConfig::SendReq(config) => {
-                match (config.kind.as_str(), config.dialect.unwrap_or_default()) {
-                    ("DATA_EXCH", _) => Self::DataExch,
-                    (_, SendReqDialect::Etc100) => Self::SendReqEtc100,
-                    (_, SendReqDialect::Etc101) => Self::SendReqEtc101,
-                }
-            }
+            BlockConfig::SendReq(config) => match config.form() {
+                SendReqForm::Etc100 => Self::SendReqEtc100,
+                SendReqForm::Etc101 => Self::SendReqEtc101,
+                SendReqForm::DataExch => Self::DataExch,
+            },
         }
     }
 }

@@ -11,7 +11,6 @@
 //! Everything is told: what a dialect cannot say is a [`Change`] and stands as a comment in the text; what an import
 //! does not understand is a [`Remark`] with its line. Comments carry nothing that an import would read.
 
-mod aside;
 mod ccw_st;
 mod change;
 mod cli;
@@ -36,7 +35,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-pub use self::aside::{BlockConfig, SendReq};
+use crate::config::BlockConfig;
+
 pub use self::change::{Change, Grade, Why};
 pub use self::convert::{Converted, convert};
 pub use self::dialect::{Dialect, Kind, Language, UnknownDialect};

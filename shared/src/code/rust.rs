@@ -2,7 +2,8 @@
 
 use super::dialect::Dialect;
 use super::remark::not_readable;
-use super::{BlockConfig, Code, Imported, change};
+use super::{Code, Imported, change};
+use crate::config::BlockConfig;
 
 /// A block as text.
 pub(super) fn export(block: &BlockConfig) -> Code {
