@@ -78,6 +78,8 @@ pub enum Why {
     OtherDevice,
     /// It is not in use for this message.
     Unused,
+    /// A number there is at most so big.
+    NumberLimit(i64),
     /// Its name is made of other characters.
     NameCharacters,
     /// The program around the block does it.
@@ -157,6 +159,7 @@ impl Why {
             Self::OtherSegments => "other_segments",
             Self::OtherDevice => "other_device",
             Self::Unused => "unused",
+            Self::NumberLimit(_) => "number_limit",
             Self::NameCharacters => "name_characters",
             Self::ProgramDoes => "program_does",
             Self::OursAlone => "ours_alone",
@@ -194,6 +197,9 @@ impl fmt::Display for Why {
             Self::OtherSegments => "a path there is class, instance, attribute and members in this order",
             Self::OtherDevice => "it goes to another device: correct the address",
             Self::Unused => "it is not in use for this message",
+            Self::NumberLimit(limit) => {
+                return write!(f, "numbers are at most {limit} there; it may be refused, or cut off");
+            }
             Self::NameCharacters => "names are made of other characters there",
             Self::ProgramDoes => "the program around the block has to do it",
             Self::OursAlone => "it is a setting of cipdeck; a controller has nothing like it",

@@ -1,16 +1,156 @@
-//! Not written and not read yet: both say so.
+//! Blocks as they are stored, one or an array of them. Ids and revisions belong to the relay that gave them: they are
+//! neither written nor read.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use serde_json::{Map, Value};
 
 use super::dialect::Dialect;
-use super::remark::not_readable;
-use super::{Code, Imported, change};
+use super::remark::{Remark, RemarkKind};
+use super::{Code, Found, Imported};
 use crate::config::BlockConfig;
 
-/// A block as text.
+/// A block as JSON, in the order of its members.
 pub(super) fn export(block: &BlockConfig) -> Code {
-    change::not_written(block)
+    let mut block = block.clone();
+    let extra = match &mut block {
+        BlockConfig::MsgCipGeneric(config) => &mut config.extra,
+        BlockConfig::SendReq(config) => &mut config.extra,
+    };
+    extra.remove("id");
+    extra.remove("revision");
+    // A block has neither maps with other keys than texts nor numbers that JSON does not know.
+    let mut text = serde_json::to_string_pretty(&block).unwrap_or_default();
+    text.push('\n');
+    Code { text, changes: Vec::new() }
 }
 
-/// Blocks from text.
+/// Blocks from JSON. A block that cannot be read does not keep those beside it from being read.
 pub(super) fn import(text: &str) -> Imported {
-    not_readable(Dialect::Json, text)
+    let mut imported = Imported::default();
+    if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
+        imported.remarks.push(unreadable(text, &error));
+        return imported;
+    }
+    for range in objects(text) {
+        let object = text.get(range.clone()).unwrap_or_default();
+        match read(object) {
+            Ok(config) => imported.blocks.push(Found {
+                config,
+                dialect: Dialect::Json,
+                lines: line(text, range.start)..line(text, range.end) + 1,
+                remarks: Vec::new(),
+            }),
+            Err(words) => {
+                let words = format!("not a block: {words}");
+                let remark = Remark::error(line(text, range.start), 1, object, RemarkKind::Told(words));
+                imported.remarks.push(remark);
+            }
+        }
+    }
+    if imported.blocks.is_empty() && imported.remarks.is_empty() {
+        let words = "a block is an object: { \"name\": …, \"kind\": …, … }";
+        imported.remarks.push(Remark::error(1, 1, text, RemarkKind::told(&words)));
+    }
+    imported
+}
+
+fn read(object: &str) -> Result<BlockConfig, String> {
+    let mut members: Map<String, Value> = serde_json::from_str(object).map_err(|error| error.to_string())?;
+    members.remove("id");
+    members.remove("revision");
+    BlockConfig::from_members(members)
+}
+
+/// The objects of the outermost array, or the outermost object. The text is JSON.
+fn objects(text: &str) -> Vec<Range<usize>> {
+    let mut objects = Vec::new();
+    let (mut depth, mut start) = (0_usize, 0);
+    let (mut in_string, mut escaped) = (false, false);
+    let base = usize::from(text.trim_start_matches('\u{feff}').trim_start().starts_with('['));
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if in_string => escaped = true,
+            b'"' => in_string = !in_string,
+            _ if in_string => {}
+            b'{' | b'[' => {
+                if depth == base && byte == b'{' {
+                    start = at;
+                }
+                depth += 1;
+            }
+            b'}' | b']' => {
+                depth = depth.saturating_sub(1);
+                if depth == base && byte == b'}' {
+                    objects.push(start..at + 1);
+                }
+            }
+            _ => {}
+        }
+    }
+    objects
+}
+
+/// From 1.
+fn line(text: &str, at: usize) -> usize {
+    1 + text.get(..at).unwrap_or_default().matches('\n').count()
+}
+
+/// With the place that the error names.
+fn unreadable(text: &str, error: &serde_json::Error) -> Remark {
+    let excerpt = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let words = error.to_string();
+    let words = words.split(" at line ").next().unwrap_or_default();
+    let what = RemarkKind::Told(format!("not JSON: {words}"));
+    Remark::error(error.line().max(1), error.column().max(1), excerpt, what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::MsgCipGeneric;
+
+    #[test]
+    fn a_block_goes_out_without_its_id_and_comes_back() {
+        let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+        config.extra.insert("Colour".into(), "red".into());
+        config.extra.insert("id".into(), "b7".into());
+        let text = export(&config.clone().into()).text;
+        assert!(text.ends_with("}\n") && !text.contains("b7"), "{text}");
+        config.extra.remove("id");
+        let read = import(&text);
+        assert_eq!((read.blocks[0].config.clone(), read.blocks[0].lines.start), (config.into(), 1));
+        assert_eq!(read.remarks, []);
+    }
+
+    #[test]
+    fn several_blocks_are_read_beside_one_that_is_none() {
+        let one = export(&MsgCipGeneric::product_name("0,0").into()).text;
+        let marked = one.replacen('{', "{\"id\":\"b1\",\"revision\":7,", 1);
+        let text = format!("[\n{one},\n{{\"name\": \"}}]\\\"\"}},\n{marked}\n]");
+        let read = import(&text);
+        assert_eq!(read.blocks.len(), 2);
+        assert_eq!(read.blocks[0].config, read.blocks[1].config);
+        assert_eq!(
+            (read.remarks.len(), read.remarks[0].line),
+            (1, one.lines().count() + 3),
+            "{:?}",
+            read.remarks
+        );
+    }
+
+    #[test]
+    fn what_is_no_json_is_told_where_it_ends_to_be() {
+        let read = import("{\n \"name\": x\n}");
+        assert_eq!((read.remarks[0].line, read.remarks[0].column), (2, 10), "{}", read.remarks[0]);
+        for text in ["", "7", "[]", "[7]", "\"x\"", "{", "[[{}]]"] {
+            assert_eq!((import(text).blocks.len(), import(text).remarks.len()), (0, 1), "{text}");
+        }
+        let deep = "[".repeat(100_000);
+        assert_eq!(import(&deep).remarks.len(), 1);
+    }
 }

@@ -22,6 +22,7 @@ mod hex;
 mod ink;
 mod json;
 mod l5x;
+mod message;
 #[allow(dead_code, reason = "the dialects will")]
 mod name;
 mod parameters;

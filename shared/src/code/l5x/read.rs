@@ -1,0 +1,191 @@
+//! The `MESSAGE` tags of an export, up to that of a whole project.
+
+use alloc::collections::BTreeSet;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use roxmltree::{Document, Error, Node, ParsingOptions};
+
+use super::super::dialect::Dialect;
+use super::super::remark::{Remark, RemarkKind};
+use super::super::{Found, Imported};
+use super::logic::{self, Rung};
+use super::parameters::Parameters;
+
+/// Nodes of a document.
+const MAX_NODES: u32 = 100_000;
+
+/// Blocks from an L5X document.
+pub(in super::super) fn import(text: &str) -> Imported {
+    let mut imported = Imported::default();
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, entity_resolver: None };
+    let document = match Document::parse_with_options(text, options) {
+        Ok(document) => document,
+        Err(error) => {
+            imported.remarks.push(not_xml(text, &error));
+            return imported;
+        }
+    };
+    let lines = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+    let lines = core::iter::once(0).chain(lines).collect();
+    Project { rungs: logic::rungs(&document), document: &document, text, lines }.import(&mut imported);
+    imported
+}
+
+/// A document, and its logic.
+pub(super) struct Project<'a, 'i> {
+    pub(super) document: &'a Document<'i>,
+    pub(super) rungs: Vec<Rung>,
+    text: &'a str,
+    /// Where its lines begin.
+    lines: Vec<usize>,
+}
+
+impl<'a, 'i> Project<'a, 'i> {
+    fn import(&self, imported: &mut Imported) {
+        let mut used = BTreeSet::new();
+        for tag in self.tags().filter(|tag| is_message(*tag)) {
+            used.insert(tag.id().get_usize());
+            let parameters = tag.descendants().find(|node| node.has_tag_name("MessageParameters"));
+            let Some(parameters) = parameters else {
+                imported.remarks.push(self.error(tag, RemarkKind::Missing("MessageParameters".into())));
+                continue;
+            };
+            match parameters.attribute("MessageType").unwrap_or_default() {
+                "CIP Generic" => {}
+                kind => {
+                    let words = format!(
+                        "{}: a message of type {:?} is left out; only CIP Generic is one for any object",
+                        tag.attribute("Name").unwrap_or_default(),
+                        kind
+                    );
+                    imported.remarks.push(self.error(parameters, RemarkKind::Told(words)));
+                    continue;
+                }
+            }
+            let mut reading = Parameters::new(self, tag, parameters);
+            let config = reading.config();
+            used.extend(reading.used.iter().map(|tag| tag.get_usize()));
+            let range = tag.range();
+            let [first, last] = [range.start, range.end].map(|at| self.place(at).0);
+            imported.blocks.push(Found {
+                config: config.into(),
+                dialect: Dialect::L5x,
+                lines: first..last + 1,
+                remarks: reading.remarks,
+            });
+        }
+        self.rest(imported, &used);
+    }
+
+    /// What of the document is about something else.
+    fn rest(&self, imported: &mut Imported, used: &BTreeSet<usize>) {
+        let root = self.document.root_element();
+        if imported.blocks.is_empty() && imported.remarks.is_empty() {
+            let words = "no tag of type MESSAGE: there is nothing to read here";
+            imported.remarks.push(self.error(root, RemarkKind::told(&words)));
+            return;
+        }
+        let (starting, read) = self.starting();
+        let of_messages = |tag: &Node<'_, '_>| {
+            let name = tag.attribute("Name").unwrap_or_default().to_ascii_lowercase();
+            let is_logic = ["BOOL", "TIMER"].contains(&tag.attribute("DataType").unwrap_or_default());
+            used.contains(&tag.id().get_usize()) || is_logic && starting.contains(&name)
+        };
+        let tags = self.tags().filter(|tag| !of_messages(tag)).count();
+        let rungs = self.rungs.len().saturating_sub(read);
+        if tags + rungs > 0 {
+            let words = format!("{tags} other tags and {rungs} rungs or lines without a MSG are not read");
+            let mut remark = self.error(root, RemarkKind::Told(words));
+            remark.severity = crate::plan::Severity::Note;
+            imported.remarks.push(remark);
+        }
+    }
+
+    /// What the rungs that send name, also by way of a timer, and how many rungs these are.
+    fn starting(&self) -> (BTreeSet<String>, usize) {
+        let base = |operand: &String| operand.split('.').next().unwrap_or_default().to_ascii_lowercase();
+        let names = |rung: &Rung| -> Vec<String> {
+            rung.instructions.iter().flat_map(|it| it.operands.iter().map(base)).collect()
+        };
+        let has = |rung: &Rung, name: &str| rung.instructions.iter().any(|it| it.name == name);
+        let (sending, others): (Vec<&Rung>, Vec<&Rung>) =
+            self.rungs.iter().partition(|rung| has(rung, "MSG"));
+        let mut starting: BTreeSet<String> = sending.iter().flat_map(|rung| names(rung)).collect();
+        let mut read = sending.len();
+        for rung in others {
+            let timers = rung.instructions.iter().filter(|it| it.name == "TON");
+            if timers.filter_map(|it| it.operands.first()).any(|timer| starting.contains(&base(timer))) {
+                starting.extend(names(rung));
+                read += 1;
+            }
+        }
+        (starting, read)
+    }
+
+    fn tags(&self) -> impl Iterator<Item = Node<'a, 'i>> + use<'a, 'i> {
+        self.document.descendants().filter(|node| node.has_tag_name("Tag"))
+    }
+
+    /// A tag by its name: of the same program, otherwise of the controller. Logix ignores case.
+    pub(super) fn tag(&self, near: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+        let is_it = |tag: &Node<'_, '_>| {
+            tag.has_tag_name("Tag") && tag.attribute("Name").is_some_and(|it| it.eq_ignore_ascii_case(name))
+        };
+        near.parent()?.children().find(is_it).or_else(|| {
+            let is_controllers =
+                |tag: &Node<'_, '_>| tag.ancestors().all(|node| !node.has_tag_name("Program"));
+            self.tags().find(|tag| is_it(tag) && is_controllers(tag))
+        })
+    }
+
+    /// A module of the project.
+    pub(super) fn module(&self, name: &str) -> Option<Node<'a, 'i>> {
+        let is_it = |node: &Node<'_, '_>| {
+            node.has_tag_name("Module")
+                && node.attribute("Name").is_some_and(|it| it.eq_ignore_ascii_case(name))
+        };
+        self.document.descendants().find(is_it)
+    }
+
+    /// An error at a node.
+    pub(super) fn error(&self, node: Node<'_, '_>, what: RemarkKind) -> Remark {
+        let (line, column) = self.place(node.range().start);
+        let excerpt = self.text.get(node.range()).unwrap_or_default();
+        Remark::error(line, column, excerpt, what)
+    }
+
+    /// Line and column of a byte, both from 1.
+    pub(super) fn place(&self, at: usize) -> (usize, usize) {
+        let line = self.lines.partition_point(|start| *start <= at);
+        let start = line.checked_sub(1).and_then(|line| self.lines.get(line)).copied().unwrap_or(0);
+        let column = self.text.get(start..at).unwrap_or_default().chars().count();
+        (line, column + 1)
+    }
+}
+
+fn is_message(tag: Node<'_, '_>) -> bool {
+    tag.attribute("DataType") == Some("MESSAGE")
+}
+
+/// Where the document ends to be XML, or to be of a bearable size.
+fn not_xml(text: &str, error: &Error) -> Remark {
+    let place = [error.pos().row, error.pos().col].map(|it| usize::try_from(it).unwrap_or(usize::MAX));
+    let [line, column] = match error {
+        // This error has no place of its own.
+        Error::DtdDetected => [1 + text.lines().take_while(|line| !line.contains("<!DOCTYPE")).count(), 1],
+        _ => place,
+    };
+    let excerpt = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+    let words = match error {
+        Error::NodesLimitReached => {
+            format!("a document has at most {MAX_NODES} nodes; nothing of it was read")
+        }
+        Error::DtdDetected => {
+            "a document type definition (DTD) is not read, nor anything behind it".to_string()
+        }
+        error => format!("this is not XML: {error}"),
+    };
+    Remark::error(line, column, excerpt, RemarkKind::Told(words))
+}
