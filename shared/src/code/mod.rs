@@ -31,6 +31,8 @@ mod recognise;
 mod remark;
 mod rust;
 mod sysmac_st;
+#[allow(dead_code, unused_imports, reason = "the dialects will")]
+mod text;
 
 use alloc::string::String;
 use alloc::vec::Vec;
