@@ -153,6 +153,12 @@ pub async fn read_file(input: &web_sys::HtmlInputElement) -> Option<String> {
     text.as_string()
 }
 
+/// The bytes of a file.
+pub async fn bytes_of(file: &web_sys::File) -> Option<Vec<u8>> {
+    let buffer = js_sys::futures::JsFuture::from(file.array_buffer()).await.ok()?;
+    Some(js_sys::Uint8Array::new(&buffer).to_vec())
+}
+
 /// Offers a function to scripts of this page, such as a test's.
 pub fn offer(name: &str, function: impl Fn() -> JsValue + 'static) {
     let closure = Closure::<dyn Fn() -> JsValue>::new(function);

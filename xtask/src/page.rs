@@ -56,7 +56,7 @@ pub(crate) const DOCUMENTS: [Document; 5] = [
         name: "code",
         binary: "cipdeck-code",
         index: "code.html",
-        styles: &["tokens", "base", "kit", "access", "document", "code"],
+        styles: &["tokens", "base", "kit", "access", "document", "office", "code"],
     },
 ];
 
@@ -285,7 +285,7 @@ mod tests {
         assert!(sheet("office").ends_with(".document{}.office{}"), "{}", sheet("office"));
         assert!(sheet("devices").ends_with(".office{}.devices{}"), "{}", sheet("devices"));
         assert!(sheet("words").ends_with(".document{}.words{}"), "{}", sheet("words"));
-        assert!(sheet("code").ends_with(".document{}.code{}"), "{}", sheet("code"));
+        assert!(sheet("code").ends_with(".office{}.code{}"), "{}", sheet("code"));
     }
 
     #[test]

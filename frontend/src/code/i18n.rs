@@ -1,8 +1,8 @@
-//! The texts of this document; those of the workbench are there as well.
+//! The texts of this document; those of the workbench and of the office are there as well.
 
-use crate::i18n::{self, CODE, PAGE};
+use crate::i18n::{self, CODE, OFFICE, PAGE};
 
-/// A text of this document: `tr!("code.title")`.
+/// A text of this document: `tr!("intake.title")`, `tr!("found.blocks", count = 3)`.
 macro_rules! tr {
     ($key:literal) => {
         yew::AttrValue::Static(const { $crate::code::i18n::text($key) })
@@ -21,5 +21,5 @@ pub(crate) use tr;
 /// # Panics
 /// Where there is none: the page does not compile.
 pub(crate) const fn text(key: &str) -> &'static str {
-    i18n::first_of(&[CODE, PAGE], key)
+    i18n::first_of(&[CODE, OFFICE, PAGE], key)
 }

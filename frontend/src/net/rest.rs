@@ -9,6 +9,7 @@ use cipdeck_shared::{
 };
 use gloo_net::http::{Method, RequestBuilder};
 use serde::{Serialize, de::DeserializeOwned};
+use wasm_bindgen::JsValue;
 
 use super::session;
 
@@ -136,15 +137,17 @@ impl Reply {
 
 /// Sends a request with the proof that it comes from this page. Whoever is not signed in is known to be so from then on.
 pub async fn request(method: Method, resource: &str, body: Option<String>) -> Answered<Reply> {
+    send(method, resource, body.map(|body| ("application/json", body.into()))).await
+}
+
+/// The same with a body of any kind: its media type, and a text or bytes.
+pub async fn send(method: Method, resource: &str, body: Option<(&str, JsValue)>) -> Answered<Reply> {
     let mut request = RequestBuilder::new(&address(resource)).method(method);
     if let Some(token) = session::csrf() {
         request = request.header("X-CSRF-Token", &token);
     }
-    if body.is_some() {
-        request = request.header("Content-Type", "application/json");
-    }
     let request = match body {
-        Some(body) => request.body(body),
+        Some((kind, body)) => request.header("Content-Type", kind).body(body),
         None => request.build(),
     };
     let response = request.map_err(no_answer)?.send().await.map_err(no_answer)?;

@@ -14,7 +14,6 @@ mod audit;
 pub mod check;
 mod data;
 pub mod fetch;
-mod follow;
 mod history;
 mod i18n;
 pub mod kit;
@@ -36,7 +35,6 @@ use self::{
     allowed::AllowedPage,
     audit::AuditPage,
     data::DataPage,
-    follow::use_writing,
     history::HistoryPage,
     i18n::tr,
     overview::OverviewPage,
@@ -48,7 +46,7 @@ use self::{
     users::UsersPage,
 };
 use crate::{
-    access::{refused, who, write_banner},
+    access::{refused, use_writing, who, write_banner},
     address, browser,
     hooks::{use_second, use_session},
     net::{Link, session},

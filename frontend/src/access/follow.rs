@@ -1,4 +1,4 @@
-//! Follows who is here and whether something may be written, without a WebSocket: the office is not a live view.
+//! Follows who is here and whether something may be written, without a WebSocket: for documents that are no live view.
 
 use std::rc::Rc;
 

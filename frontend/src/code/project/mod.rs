@@ -1,0 +1,43 @@
+//! Everything as files: download, upload.
+
+mod preview;
+mod upload;
+
+use cipdeck_shared::api::Role;
+use yew::prelude::*;
+
+use self::upload::Upload;
+use super::i18n::tr;
+use crate::{
+    hooks::{use_session, use_title},
+    net::session,
+    office::kit::note,
+};
+
+/// The page.
+#[component]
+pub(super) fn ProjectPage() -> Html {
+    use_title(&tr!("project.title"));
+    use_session();
+    html! {
+        <div class="code-page">
+            <div class="page-head"><h1>{ tr!("project.title") }</h1></div>
+            <p class="lead">{ tr!("project.lead") }</p>
+            <div class="cards">
+                <section class="panel">
+                    <h2>{ tr!("project.down_title") }</h2>
+                    <p>{ tr!("project.down") }</p>
+                    <p><a class="button primary link" href="/api/v1/project" download="" data-test="project-down">{ tr!("project.down_do") }</a></p>
+                </section>
+                <section class="panel">
+                    <h2>{ tr!("project.up_title") }</h2>
+                    if session::may(Role::may_edit) {
+                        <Upload />
+                    } else {
+                        { note(tr!("project.not_you")) }
+                    }
+                </section>
+            </div>
+        </div>
+    }
+}

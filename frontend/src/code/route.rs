@@ -1,0 +1,71 @@
+//! The addresses of this document's pages.
+
+use cipdeck_shared::config::BlockId;
+use yew::prelude::*;
+
+use crate::address::{self, use_path};
+
+/// A page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Page {
+    /// Code in: from text to blocks.
+    Import,
+    /// Code out: a block in every dialect, and as another block.
+    Export(BlockId),
+    /// All blocks, devices and groups as files.
+    Project,
+    /// Everything else.
+    NotFound,
+}
+
+impl Page {
+    /// The page of a path.
+    pub fn read(path: &str) -> Self {
+        let Some(rest) = path.trim_end_matches('/').strip_prefix("/code") else { return Self::NotFound };
+        match rest {
+            "" => Self::Import,
+            "/project" => Self::Project,
+            _ => {
+                let id = rest.strip_prefix('/').and_then(|id| id.parse().ok());
+                id.map_or(Self::NotFound, Self::Export)
+            }
+        }
+    }
+
+    /// The path of a page.
+    pub fn path(self) -> String {
+        match self {
+            Self::Import => "/code".to_owned(),
+            Self::Export(id) => format!("/code/{id}"),
+            Self::Project => "/code/project".to_owned(),
+            Self::NotFound => "/code/404".to_owned(),
+        }
+    }
+}
+
+/// Where we are; renders again when that changes.
+#[hook]
+pub fn use_page() -> Page {
+    Page::read(&use_path())
+}
+
+/// A link to a page.
+pub fn link(to: Page, class: &'static str, words: Html) -> Html {
+    address::link(to.path(), class, words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_page_has_its_address() {
+        for page in [Page::Import, Page::Project, Page::Export(BlockId(7))] {
+            assert_eq!(Page::read(&page.path()), page, "{page:?}");
+        }
+        assert_eq!(Page::read("/code/"), Page::Import);
+        for path in ["/codex", "/code/x", "/code/b", "/code/d1", "/code/b1/x", "/cod", "/code/projects"] {
+            assert_eq!(Page::read(path), Page::NotFound, "{path}");
+        }
+    }
+}
