@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::SystemTime;
 
-use cipdeck_shared::api::{BlockStatus, LastSuccess};
+use cipdeck_shared::api::{BlockStatus, LastSuccess, WordsStatus};
 use cipdeck_shared::config::{BlockConfig, BlockId, Target};
 use cipdeck_shared::engine::{BlockView, Exchange, TargetView};
 use cipdeck_shared::plan::{Finding, MessagePlan};
@@ -121,6 +121,7 @@ impl Answer {
     pub fn status(&self) -> BlockStatus {
         let at = wall_clock::at(self.at);
         let mut status = BlockStatus::new(self.block, &self.view, Some(at.clone()), None);
+        status.words = WordsStatus::of_started(&self.view);
         status.last = status.q.then(|| LastSuccess::of(&status, at));
         status
     }

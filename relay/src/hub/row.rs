@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 use std::time::SystemTime;
 
-use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES};
+use cipdeck_shared::api::{BlockStatus, ExchangeView, LastSuccess, MAX_EDGES, WordsStatus};
 use cipdeck_shared::config::{Block, BlockConfig, BlockId, read_hex};
 use cipdeck_shared::dissect::{self, Decoded};
-use cipdeck_shared::engine::{BlockView, Exchange, StatusBits};
+use cipdeck_shared::engine::{BlockView, Exchange, Phase, StatusBits};
 use cipdeck_shared::tag::DataFields;
 
 use crate::capture::Carried;
@@ -45,7 +45,9 @@ struct Kept {
 
 impl Row {
     pub(super) fn new(block: Block, version: u64) -> Self {
-        let status = BlockStatus::new(block.id, &BlockView::default(), None, None);
+        let view = BlockView::default();
+        let status =
+            BlockStatus { words: words(&block, &view), ..BlockStatus::new(block.id, &view, None, None) };
         Self {
             layout: layout_of(&block),
             block,
@@ -65,6 +67,10 @@ impl Row {
         }
         self.block = block;
         self.layout = layout_of(&self.block);
+        if self.status.phase == Phase::Idle || self.block.config.as_send_req().is_none() {
+            // Nothing has been started with other words.
+            self.status.words = words(&self.block, &BlockView::default());
+        }
         let data = self.status.last.as_ref().and_then(|last| read_hex(&last.res_data).ok());
         let decoded = self.decode(&data.unwrap_or_default());
         if let Some(last) = &mut self.status.last {
@@ -88,7 +94,10 @@ impl Row {
             self.edges.push_back(*edge);
         }
         let last = self.status.last.take();
-        self.status = BlockStatus::new(self.block.id, view, Some(at), last);
+        self.status = BlockStatus {
+            words: words(&self.block, view),
+            ..BlockStatus::new(self.block.id, view, Some(at), last)
+        };
         self.status.edges.clear();
         self.version = version;
     }
@@ -115,7 +124,8 @@ impl Row {
 
     /// The status with what the engine shows at this moment.
     pub(super) fn with(&self, id: BlockId, view: &BlockView) -> BlockStatus {
-        BlockStatus::new(id, view, self.status.at.clone(), self.status.last.clone())
+        let (at, last) = (self.status.at.clone(), self.status.last.clone());
+        BlockStatus { words: words(&self.block, view), ..BlockStatus::new(id, view, at, last) }
     }
 
     /// The status with the edges since `seen`; everything of the last message for a viewer who has seen nothing.
@@ -152,6 +162,11 @@ impl Row {
         let begin = self.edges.iter().rposition(|edge| *edge == (0, StatusBits(StatusBits::EN)));
         (self.edges.len() - begin.unwrap_or(0)) as u64
     }
+}
+
+/// What a SEND_REQ or DATA_EXCH shows beside the rest.
+fn words(block: &Block, view: &BlockView) -> Option<WordsStatus> {
+    block.config.as_send_req().map(|config| WordsStatus::new(config, view))
 }
 
 /// One that cannot be read has been refused when it was stored.

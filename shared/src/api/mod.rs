@@ -12,6 +12,7 @@ mod rest;
 mod secret;
 mod status;
 mod target;
+mod words;
 mod write;
 mod ws;
 
@@ -41,6 +42,7 @@ pub use self::rest::{
 };
 pub use self::status::{BlockStatus, LastSuccess, MAX_EDGES};
 pub use self::target::{ConnectionStatus, TargetStatus};
+pub use self::words::WordsStatus;
 pub use self::write::{
     NewWindow, ReadOnly, ReadValue, WindowView, WriteRequest, WriteState, WriteTicket, Written,
 };

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::words::WordsStatus;
 use super::write::Written;
 use crate::config::{BlockId, write_hex};
 use crate::dissect::Decoded;
@@ -58,6 +59,9 @@ pub struct BlockStatus {
     pub edges_dropped: u64,
     /// The last success.
     pub last: Option<LastSuccess>,
+    /// Of a SEND_REQ or DATA_EXCH.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub words: Option<WordsStatus>,
     /// In the answer to a write that has been carried out: what was there, what is there now.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub written: Option<Written>,
@@ -92,7 +96,8 @@ impl LastSuccess {
 }
 
 impl BlockStatus {
-    /// From the engine's view. `at` and `last` belong to the caller, who has a wall clock.
+    /// From the engine's view. `at` and `last` belong to the caller, who has a wall clock; so do `words`: most pages have no
+    /// blocks with them.
     pub fn new(block: BlockId, view: &BlockView, at: Option<String>, last: Option<LastSuccess>) -> Self {
         Self {
             block,
@@ -113,6 +118,7 @@ impl BlockStatus {
             edges: view.edges.clone(),
             edges_dropped: view.edges_dropped,
             last,
+            words: None,
             written: None,
         }
     }

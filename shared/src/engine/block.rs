@@ -3,11 +3,13 @@
 //! Source: 2080-RM001D p. 179, 217, 221 and the message timing of FactoryTalk Design Workbench; decisions where
 //! the manual is silent are in docs/ARCHITECTURE.md.
 
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::failure::Failure;
-use super::status::{Cause, CipStatus, Phase, StatusBits};
+use super::management::Words;
+use super::status::{Cause, CauseKind, CipStatus, Phase, StatusBits};
 use super::time::Instant;
 
 /// What happens to a block.
@@ -19,7 +21,7 @@ pub enum Input {
     Fall,
     /// The trigger starts a message that has to end before `deadline`.
     Trigger {
-        /// The end of `UcmmTimeout`.
+        /// The end of `UcmmTimeout`; it may be [`Instant::NEVER`].
         deadline: Instant,
     },
     /// A communication buffer has been allocated.
@@ -166,7 +168,13 @@ impl MsgBlock {
 
     /// When a busy message times out.
     pub fn deadline(&self) -> Option<Instant> {
-        self.phase.is_busy().then_some(self.deadline)
+        self.phase.is_busy().then_some(self.deadline).filter(|deadline| *deadline != Instant::NEVER)
+    }
+
+    /// Whether it has ended with an answer of the device itself, be it a refusal.
+    pub(super) fn is_answered(&self) -> bool {
+        let refused = |cause: &Cause| cause.what == CauseKind::RefusedByDevice && cause.by.is_none();
+        self.q || self.cause.as_ref().is_some_and(refused)
     }
 
     /// When the message was triggered.
@@ -190,6 +198,7 @@ impl MsgBlock {
             elapsed_us: self.elapsed_us,
             edges: Vec::new(),
             edges_dropped: 0,
+            words: None,
         }
     }
 
@@ -282,6 +291,8 @@ pub struct BlockView {
     pub edges: Vec<(u64, StatusBits)>,
     /// Edges that were left out.
     pub edges_dropped: u64,
+    /// Of a SEND_REQ or DATA_EXCH, from its first start on; [`Management`](super::Management) shows them.
+    pub words: Option<Box<Words>>,
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ impl Opening {
             t_o: originator.next_id(),
             size,
             needed,
-            idle: plan.connection().map_or(Millis(0), |connection| connection.timeout_ms.into()),
+            idle: plan.idle_ms().into(),
             large: size > MAX_CLASSIC_SIZE,
             attempts: 1,
         }

@@ -1,5 +1,6 @@
 //! One block inside the engine: its machine, its trigger, and the message that is under way.
 
+use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -11,6 +12,7 @@ use super::block::{BlockView, Input, MsgBlock};
 use super::client::ClientId;
 use super::event::Exchange;
 use super::failure::Failure;
+use super::management::Words;
 use super::status::StatusBits;
 use super::time::Instant;
 use super::trigger::Trigger;
@@ -31,6 +33,8 @@ pub(super) struct Entry {
     pub(super) wake: Option<Instant>,
     /// Message router bytes of the newest message.
     pub(super) request: Arc<[u8]>,
+    /// Of a SEND_REQ or DATA_EXCH.
+    words: Option<Box<Words>>,
     edges: Vec<(u64, StatusBits)>,
     edges_dropped: u64,
 }
@@ -53,6 +57,8 @@ pub(super) struct Active {
 pub(super) struct Invalid {
     sub_error_id: u16,
     detail: String,
+    /// The communication report, of a block with words.
+    report: Option<u8>,
 }
 
 impl Invalid {
@@ -60,7 +66,9 @@ impl Invalid {
         let error = findings.iter().find(|finding| finding.severity == Severity::Error);
         let sub = error.and_then(Finding::error_ids).and_then(|(_, sub)| sub);
         let detail = error.map(|finding| alloc::format!("{}: {}", finding.field, finding.rule));
-        Self { sub_error_id: sub.unwrap_or(0), detail: detail.unwrap_or_else(|| "no plan".to_string()) }
+        let detail = detail.unwrap_or_else(|| "no plan".to_string());
+        let report = findings.iter().find_map(Finding::communication_report);
+        Self { sub_error_id: sub.unwrap_or(0), detail, report }
     }
 
     pub(super) fn failure(&self) -> Failure {
@@ -79,6 +87,7 @@ impl Entry {
             run_once: false,
             wake: None,
             request: Arc::default(),
+            words: None,
             edges: Vec::new(),
             edges_dropped: 0,
         }
@@ -111,7 +120,26 @@ impl Entry {
 
     /// How the block looks now, without edges.
     pub(super) fn glance(&self) -> BlockView {
-        BlockView { request: Arc::clone(&self.request), ..self.block.view() }
+        BlockView { request: Arc::clone(&self.request), words: self.words.clone(), ..self.block.view() }
+    }
+
+    /// A message starts, or its start is refused.
+    pub(super) fn start_words(&mut self) {
+        let before = self.words.as_ref().map_or(0, |words| words.exchange);
+        self.words = match &self.plan {
+            Ok(plan) => plan.words().map(|plan| Words::started(Arc::clone(plan), before)),
+            Err(invalid) => invalid.report.map(|report| Words::refused(report, before)),
+        }
+        .map(Box::new);
+    }
+
+    /// The message has ended: what the device itself has answered is kept.
+    pub(super) fn end_words(&mut self) {
+        let (Some(words), Some(active)) = (&mut self.words, &self.active) else { return };
+        // The refusal of a connection is no answer to the message, nor is a reply that makes no sense.
+        if self.block.is_answered() {
+            words.reply = active.exchange.response().unwrap_or_default().to_vec();
+        }
     }
 
     /// The block with all edges of its last message.

@@ -185,6 +185,16 @@ impl MessagePlan {
         self.connection
     }
 
+    /// ms that its connection stays open without being used; 0 for an unconnected message.
+    pub fn idle_ms(&self) -> u32 {
+        let timeout_ms = self.connection.map_or(0, |connection| connection.timeout_ms);
+        if self.words.is_some() && self.connection.is_some() {
+            // Its own timeout has no limits, the target's patience has.
+            return timeout_ms.clamp(limits::CONN_MSG_TIMEOUT.min, limits::CONN_MSG_TIMEOUT.max);
+        }
+        timeout_ms
+    }
+
     /// ms between reads that keep an idle session alive; 0 = none.
     pub const fn keep_alive_ms(&self) -> u32 {
         self.keep_alive_ms

@@ -30,6 +30,7 @@
 //! | Assembly 4/150 | 3: 32 bytes of output, writable, remembered |
 //! | Connection Manager 6/1 | 1 to 8: what it has counted, Get_Attributes_All |
 //! | DPI Parameter 147/n | 9: the value; n = 1, 7, 41, 42, 43, see below |
+//! | Modbus 68/1 | none; 0x4E reads and 0x50 writes holding registers, 0 to 999, each its own number at first |
 //! | TCP/IP Interface 245/1 | 5; only of a module with an address |
 //! | Ethernet Link 246/1 | 1 to 3; only of a module with an address |
 //!
@@ -77,6 +78,7 @@ mod device;
 mod fault;
 mod forward;
 mod identity;
+mod modbus;
 mod module;
 mod network;
 mod objects;

@@ -8,6 +8,7 @@ use crate::wire::{ClassCode, GeneralStatus, ServiceCode};
 use super::assembly::{self, ASSEMBLY_SIZE, INPUT_ASSEMBLY, OUTPUT_ASSEMBLY};
 use super::attribute::{self, Class};
 use super::counters::ManagerCounts;
+use super::modbus::Registers;
 use super::module::SimModule;
 use super::network;
 use super::parameter::{self, Parameters};
@@ -20,6 +21,7 @@ pub(super) struct Objects {
     pub(super) counts: ManagerCounts,
     output: [u8; ASSEMBLY_SIZE],
     parameters: Parameters,
+    registers: Registers,
 }
 
 /// What a request can be about.
@@ -33,6 +35,7 @@ enum Object {
     Input,
     Output,
     Parameter(u32),
+    Modbus,
     TcpIp([u8; 4]),
     EthernetLink,
 }
@@ -50,6 +53,7 @@ impl Objects {
             counts: ManagerCounts::default(),
             output: [0; ASSEMBLY_SIZE],
             parameters: Parameters::default(),
+            registers: Registers::default(),
         }
     }
 
@@ -73,6 +77,7 @@ impl Objects {
                 self.write(object, request.data)?;
                 Ok(Vec::new())
             }
+            (service, Object::Modbus) => self.registers.carry_out(service, request.data),
             _ => Err(GeneralStatus::ServiceNotSupported.into()),
         }
     }
@@ -119,6 +124,7 @@ impl Objects {
             (ClassCode::Assembly, INPUT_ASSEMBLY) => Object::Input,
             (ClassCode::Assembly, OUTPUT_ASSEMBLY) => Object::Output,
             (ClassCode::DpiParameter, number) if parameter::exists(number) => Object::Parameter(number),
+            (ClassCode::Modbus, 1) => Object::Modbus,
             (ClassCode::TcpIpInterface, 1) => Object::TcpIp(self.module.ip.ok_or(unknown)?),
             (ClassCode::EthernetLink, 1) if self.module.ip.is_some() => Object::EthernetLink,
             _ => return Err(unknown),
@@ -129,7 +135,10 @@ impl Objects {
     /// The classes of which there are instances. Only what is on the Ethernet has objects of it.
     fn class(&self, class: ClassCode) -> Option<Class> {
         let (revision, max_instance, instances) = match class {
-            ClassCode::Identity | ClassCode::MessageRouter | ClassCode::ConnectionManager => (1, 1, 1),
+            ClassCode::Identity
+            | ClassCode::MessageRouter
+            | ClassCode::ConnectionManager
+            | ClassCode::Modbus => (1, 1, 1),
             ClassCode::Assembly => (2, 150, 2),
             ClassCode::DpiParameter => (1, 43, 5),
             ClassCode::TcpIpInterface | ClassCode::EthernetLink if self.module.ip.is_some() => (1, 1, 1),

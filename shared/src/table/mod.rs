@@ -6,6 +6,7 @@
 mod access;
 mod attribute;
 mod identity;
+mod report;
 mod tsv;
 
 use crate::wire::{EncapsulationStatus, GeneralStatus, ServiceCode};
@@ -13,6 +14,7 @@ use crate::wire::{EncapsulationStatus, GeneralStatus, ServiceCode};
 pub use self::access::{Access, classify};
 pub use self::attribute::{Field, FieldKind, attribute};
 pub use self::identity::{identity_state, identity_status};
+pub use self::report::{MESSAGE_REFUSED, ReportList, communication_report, module_event, operation_report};
 use self::tsv::Table;
 
 const SERVICES: Table = Table::new(include_str!("../../data/services.tsv"));

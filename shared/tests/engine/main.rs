@@ -17,6 +17,7 @@ mod rarely;
 mod routers;
 mod target;
 mod tolerance;
+mod words;
 
 #[cfg(target_arch = "wasm32")]
 wasm_bindgen_test::wasm_bindgen_test_configure!(run_in_browser);

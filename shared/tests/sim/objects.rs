@@ -160,3 +160,27 @@ fn every_class_says_its_revision_and_its_instances() {
     let list = ask(&mut device, &hex!("03 02 20 04 24 00 02 00 01 00 03 00"), at(0));
     assert_eq!(list, (0, hex!("02 00 01 00 00 00 02 00 03 00 00 00 02 00").to_vec()));
 }
+
+#[test]
+fn holding_registers_are_read_and_written() {
+    let mut device = Device::default();
+    let read = hex!("4E 02 20 44 24 01 05 00 03 00");
+    assert_eq!(ask(&mut device, &read, at(0)), (0, hex!("05 00 06 00 07 00").to_vec()));
+    assert_eq!(ask(&mut device, &hex!("50 02 20 44 24 01 06 00 01 00 34 12"), at(0)), (0, vec![]));
+    assert_eq!(ask(&mut device, &read, at(0)), (0, hex!("05 00 34 12 07 00").to_vec()));
+    let rows: [(&str, &[u8], u8); 9] = [
+        ("no quantity", &hex!("4E 02 20 44 24 01 05 00"), 0x13),
+        ("more than that", &hex!("4E 02 20 44 24 01 05 00 01 00 00"), 0x15),
+        ("none at all", &hex!("4E 02 20 44 24 01 05 00 00 00"), 0x20),
+        ("too many", &hex!("4E 02 20 44 24 01 05 00 7C 00"), 0x20),
+        ("over the end", &hex!("4E 02 20 44 24 01 E7 03 02 00"), 0x20),
+        ("too few to write", &hex!("50 02 20 44 24 01 05 00 02 00 34 12"), 0x13),
+        ("too many to write", &hex!("50 02 20 44 24 01 05 00 01 00 34 12 00"), 0x15),
+        ("another service", &hex!("4D 02 20 44 24 01 05 00 01 00"), 0x08),
+        ("an attribute", &hex!("0E 03 20 44 24 01 30 01"), 0x14),
+    ];
+    for (name, request, status) in rows {
+        assert_eq!(ask(&mut device, request, at(0)).0, status, "{name}");
+    }
+    assert_eq!(ask(&mut device, &hex!("4E 02 20 44 24 01 00 00 7B 00"), at(0)).1.len(), 246);
+}

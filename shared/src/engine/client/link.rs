@@ -73,8 +73,7 @@ impl Client {
                 session.expect(outstanding.expected);
             }
             if let What::Message(job, _) = &outstanding.what {
-                let timeout = job.plan.connection().map(|connection| Millis::from(connection.timeout_ms));
-                let deadline = timeout.map(|timeout| cx.now + timeout);
+                let deadline = job.plan.connection().map(|open| cx.now.deadline(open.timeout_ms));
                 cx.out.push_back(Output::Wrote(job.block, self.transmit.clone()));
                 cx.out.push_back(Output::Block(job.block, Input::Written { deadline }));
             }

@@ -2,6 +2,7 @@
 
 use crate::config::BlockId;
 use crate::plan::MessagePlan;
+use crate::plan::limits::FOR_EVER;
 use crate::wire::UnconnectedMessage;
 
 use crate::engine::block::Input;
@@ -138,7 +139,11 @@ impl Client {
     }
 }
 
-/// The target's own time limit: ours in whole seconds, rounded up.
+/// The target's own time limit: ours in whole seconds, rounded up; 0 without one.
 pub(super) fn timeout_s(plan: &MessagePlan) -> u16 {
-    u16::try_from(plan.ucmm_timeout_ms().div_ceil(1_000)).unwrap_or(u16::MAX)
+    match plan.ucmm_timeout_ms() {
+        // OpENer encap.h: 0 leaves it to CIP.
+        FOR_EVER => 0,
+        ms => u16::try_from(ms.div_ceil(1_000)).unwrap_or(u16::MAX),
+    }
 }

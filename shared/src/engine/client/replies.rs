@@ -172,7 +172,7 @@ impl Client {
         let connection =
             self.connections.iter_mut().find(|connection| Some(connection.triad.serial) == serial);
         let Some(connection) = connection else { return };
-        connection.idle = plan.timeout_ms.into();
+        connection.idle = job.plan.idle_ms().into();
         connection.close_wanted |= plan.close;
         if !connection.close_wanted {
             return;

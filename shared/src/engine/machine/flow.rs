@@ -13,25 +13,24 @@ use crate::engine::entry::{Active, Entry};
 use crate::engine::event::{Event, Exchange};
 use crate::engine::failure::Failure;
 use crate::engine::status::CauseKind;
-use crate::engine::time::{Instant, Millis};
+use crate::engine::time::Instant;
 
 use super::Engine;
 
 /// Changes of the place in the queue are told to this many waiting blocks.
 const ANNOUNCED_POSITIONS: usize = 16;
 
-/// How long a block without a usable plan is busy: it fails at once.
-const NO_TIME: Millis = Millis(0);
-
 impl Engine {
     pub(super) fn trigger(&mut self, block: BlockId, now: Instant) {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
-        let timeout = entry.plan.as_ref().map_or(NO_TIME, |plan| Millis::from(plan.ucmm_timeout_ms()));
+        // A block without a usable plan fails at once.
+        let deadline = entry.plan.as_ref().map_or(now, |plan| now.deadline(plan.ucmm_timeout_ms()));
         if !entry.block.phase().is_busy() {
             entry.request =
                 entry.plan.as_ref().map_or_else(|_| Arc::default(), |plan| Arc::clone(plan.bytes()));
+            entry.start_words();
         }
-        self.step(block, Input::Trigger { deadline: now + timeout }, now);
+        self.step(block, Input::Trigger { deadline }, now);
     }
 
     /// A period has elapsed while IN is TRUE.
@@ -94,6 +93,7 @@ impl Engine {
         let Some(entry) = self.blocks.get_mut(&block) else { return };
         entry.trigger.ended(now);
         arm(&mut self.timers, block, entry);
+        entry.end_words();
         let view = Box::new(entry.view());
         let silence = view.cause.clone().filter(|cause| cause.what == CauseKind::Timeout);
         let run_once = core::mem::take(&mut entry.run_once);
