@@ -4,7 +4,7 @@ use alloc::string::String;
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::{SendReq, write_words};
+use crate::config::{SendReq, words_of, write_words};
 use crate::engine::{BlockView, Management};
 
 /// What a SEND_REQ or DATA_EXCH shows beside the rest of its status.
@@ -45,7 +45,7 @@ impl WordsStatus {
         let [timeout, length] = management.timeout_and_length.unwrap_or(given);
         Self {
             management_param: [management.activity, management.reports, timeout, length],
-            received_data: write_words(&management.received),
+            received_data: write_words(&words_of(&management.received)),
             eno: management.eno,
         }
     }

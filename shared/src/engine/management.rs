@@ -8,7 +8,6 @@ mod reports;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::config::words_of;
 use crate::plan::words::WordsPlan;
 
 pub use self::reports::{REPORTS, ReportRow};
@@ -52,8 +51,8 @@ pub struct Management {
     pub reports: u16,
     /// `Management_Param[2]` and `[3]`: timeout and length; as the program has left them where the start was refused.
     pub timeout_and_length: Option<[u16; 2]>,
-    /// `Received_Data`, as far as it was received.
-    pub received: Vec<u16>,
+    /// Bytes of `Received_Data`, as far as it was received: low byte of a word first.
+    pub received: Vec<u8>,
     /// EN was taken: FALSE while EN is FALSE, and after a start that was refused.
     pub eno: bool,
 }
@@ -87,7 +86,7 @@ impl Management {
             activity: exchange | u16::from(busy),
             reports: u16::from(operation) << 8 | u16::from(communication),
             timeout_and_length: Some([tenths, length]),
-            received: words_of(received),
+            received: received.to_vec(),
             eno: view.input,
         })
     }

@@ -34,7 +34,16 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("code", &["config", "plan", "wire", "table", "tag"]),
     (
         "engine",
-        &["wire", "plan", "tag", "config::BlockId", "config::Channel", "config::Profile", "config::Target"],
+        &[
+            "wire",
+            "plan",
+            "tag",
+            "config::BlockId",
+            "config::Channel",
+            "config::Profile",
+            "config::SendReqForm",
+            "config::Target",
+        ],
     ),
     ("sim", &["wire", "engine::time", "tag", "config::Profile"]),
     (
@@ -52,6 +61,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "engine::Cause",
             "engine::CipStatus",
             "engine::Exchange",
+            "engine::Management",
             "engine::Phase",
             "engine::StatusBits",
             "engine::TargetState",
