@@ -89,6 +89,8 @@ fn navigation(route: Route) -> Html {
                 { entry(Route::Monitor, tr!("nav.monitor")) }
                 { entry(Route::Connections, tr!("nav.connections")) }
                 { entry(Route::Help, tr!("nav.help")) }
+                <li><a href="/words">{ "SEND_REQ" }</a></li>
+                <li><a href="/code">{ tr!("nav.code") }</a></li>
                 <li><a href="/devices">{ tr!("nav.devices") }</a></li>
                 <li><a href="/office">{ tr!("nav.office") }</a></li>
             </ul>

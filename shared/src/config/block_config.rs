@@ -111,14 +111,19 @@ impl BlockConfig {
         }
     }
 
-    /// By the `kind` among its members.
+    /// By its members.
     pub fn from_members(members: Map<String, Value>) -> Result<Self, String> {
-        let kind = members.get("kind").and_then(Value::as_str);
-        if matches!(kind, Some(SEND_REQ | DATA_EXCH)) {
-            members.try_into().map(Self::SendReq)
-        } else {
-            let config = serde_json::from_value(Value::Object(members));
-            config.map(Self::MsgCipGeneric).map_err(|error| error.to_string())
+        let read: MsgCipGeneric =
+            serde_json::from_value(Value::Object(members)).map_err(|error| error.to_string())?;
+        Self::of_kind(read)
+    }
+
+    /// Everything is read as a `MSG_CIPGENERIC` first, whose unknown members have what is another kind's own: one way
+    /// to read configurations instead of two saves 10 kB of the page.
+    pub(super) fn of_kind(read: MsgCipGeneric) -> Result<Self, String> {
+        match read.kind.as_str() {
+            SEND_REQ | DATA_EXCH => read.try_into().map(Self::SendReq),
+            _ => Ok(Self::MsgCipGeneric(read)),
         }
     }
 }
@@ -137,7 +142,7 @@ impl From<SendReq> for BlockConfig {
 
 impl<'de> Deserialize<'de> for BlockConfig {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::from_members(Map::deserialize(deserializer)?).map_err(serde::de::Error::custom)
+        Self::of_kind(MsgCipGeneric::deserialize(deserializer)?).map_err(serde::de::Error::custom)
     }
 }
 

@@ -40,10 +40,10 @@ pub struct MsgCipGeneric {
     #[serde(rename = "CtrlCfg", default)]
     pub ctrl_cfg: CipControlCfg,
     /// Service and path.
-    #[serde(rename = "AppCfg")]
+    #[serde(rename = "AppCfg", default)]
     pub app_cfg: CipAppCfg,
     /// Device and timeouts.
-    #[serde(rename = "TargetCfg")]
+    #[serde(rename = "TargetCfg", default)]
     pub target_cfg: CipTargetCfg,
     /// Request data as hexadecimal text.
     #[serde(rename = "ReqData", default)]
@@ -114,7 +114,7 @@ pub struct CipAppCfg {
 }
 
 /// CIPTARGETCFG: device, connection mode and timeouts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CipTargetCfg {
     /// `"4,192.168.1.100"`: at most 80 characters and two hops.
@@ -138,40 +138,50 @@ pub struct CipTargetCfg {
     pub extra: Extra,
 }
 
-impl MsgCipGeneric {
-    /// The product name of a device: what the first message usually is.
-    pub fn product_name(path: &str) -> Self {
+/// Nothing is asked: one that is left out has errors at its numbers.
+impl Default for CipAppCfg {
+    fn default() -> Self {
         Self {
-            name: "product-name".to_string(),
+            service: 0,
+            class: 0,
+            instance: 0,
+            attribute: 0,
+            member_cnt: 0,
+            member_id: member_id(),
+            extra: Extra::new(),
+        }
+    }
+}
+
+impl MsgCipGeneric {
+    /// Without a name, a request and a device.
+    pub(super) fn empty() -> Self {
+        Self {
+            name: String::new(),
             kind: kind(),
             channel: Channel::Controller,
             resume: false,
             profile: Profile::Auto,
             keep_alive: 0,
             ctrl_cfg: CipControlCfg::default(),
-            app_cfg: CipAppCfg {
-                service: 14,
-                class: 1,
-                instance: 1,
-                attribute: 7,
-                member_cnt: 0,
-                member_id: member_id(),
-                extra: Extra::new(),
-            },
-            target_cfg: CipTargetCfg {
-                path: path.to_string(),
-                cip_conn_mode: 0,
-                ucmm_timeout: 0,
-                conn_msg_timeout: 0,
-                conn_close: false,
-                extra: Extra::new(),
-            },
+            app_cfg: CipAppCfg::default(),
+            target_cfg: CipTargetCfg::default(),
             req_data: String::new(),
             req_length: None,
             res_data_size: res_data_size(),
             req_layout: String::new(),
             res_layout: String::new(),
             extra: Extra::new(),
+        }
+    }
+
+    /// The product name of a device: what the first message usually is.
+    pub fn product_name(path: &str) -> Self {
+        Self {
+            name: "product-name".to_string(),
+            app_cfg: CipAppCfg { service: 14, class: 1, instance: 1, attribute: 7, ..CipAppCfg::default() },
+            target_cfg: CipTargetCfg { path: path.to_string(), ..CipTargetCfg::default() },
+            ..Self::empty()
         }
     }
 }

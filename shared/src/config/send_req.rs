@@ -7,11 +7,11 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use serde_json::{Map, Value};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::channel::Channel;
-use super::msg_cip_generic::{Extra, is_default};
+use super::msg_cip_generic::{Extra, MsgCipGeneric, is_default};
 use super::profile::Profile;
 
 /// The `kind` of a block for TSX ETC 100 and TSX ETC 101.
@@ -178,50 +178,89 @@ impl SendReq {
     }
 }
 
-/// By hand: what serde derives is several times as much of the page.
-impl TryFrom<Map<String, Value>> for SendReq {
+/// Members that a block of words does not have.
+const NOT_OURS: &str =
+    "`CtrlCfg`, `AppCfg`, `TargetCfg`, `ReqData`, `ReqLength` and `ResDataSize` belong to MSG_CIPGENERIC";
+
+/// By hand, of a block that has been read already: what serde derives is several times as much of the page.
+impl TryFrom<MsgCipGeneric> for SendReq {
     type Error = String;
 
-    fn try_from(members: Map<String, Value>) -> Result<Self, String> {
-        let mut members = Members(members);
-        let text = |found: Option<String>| found.unwrap_or_default();
+    fn try_from(read: MsgCipGeneric) -> Result<Self, String> {
+        let empty = MsgCipGeneric::empty();
+        let own = (
+            &read.ctrl_cfg,
+            &read.app_cfg,
+            &read.target_cfg,
+            &read.req_data,
+            read.req_length,
+            read.res_data_size,
+        );
+        if own
+            != (
+                &empty.ctrl_cfg,
+                &empty.app_cfg,
+                &empty.target_cfg,
+                &empty.req_data,
+                empty.req_length,
+                empty.res_data_size,
+            )
+        {
+            return Err(NOT_OURS.to_string());
+        }
+        let mut members = Members(read.extra);
         Ok(Self {
-            name: members.needed("name")?,
-            kind: members.needed("kind")?,
-            dialect: members.any("Dialect")?,
-            channel: members.any("Channel")?.unwrap_or_default(),
-            resume: members.any("Resume")?.unwrap_or_default(),
-            profile: members.any("Profile")?.unwrap_or_default(),
-            keep_alive: members.number("KeepAlive")?.unwrap_or_default(),
-            period: members.number("Period")?.unwrap_or_default(),
-            address: members.needed("Address")?,
-            request_code: members.number("Request_Code")?.unwrap_or(request_code()),
-            exchange_type: members.number("Type")?.unwrap_or(exchange_type()),
-            data_to_send: members.needed("Data_to_Send")?,
-            management_param: members.any("Management_Param")?.unwrap_or_else(management_param),
-            received_data_size: members.number("Received_Data_Size")?.unwrap_or(received_data_size()),
-            req_layout: text(members.any("ReqLayout")?),
-            res_layout: text(members.any("ResLayout")?),
-            extra: members.0.into_iter().collect(),
+            name: read.name,
+            kind: read.kind,
+            dialect: members.dialect()?,
+            channel: read.channel,
+            resume: read.resume,
+            profile: read.profile,
+            keep_alive: read.keep_alive,
+            period: members.number("Period", 0)?,
+            address: members.text("Address")?,
+            request_code: members.number("Request_Code", request_code())?,
+            exchange_type: members.number("Type", exchange_type())?,
+            data_to_send: members.text("Data_to_Send")?,
+            management_param: members.numbers("Management_Param")?,
+            received_data_size: members.number("Received_Data_Size", received_data_size())?,
+            req_layout: read.req_layout,
+            res_layout: read.res_layout,
+            extra: members.0,
         })
     }
 }
 
 /// The members of a block that have not been taken yet.
-struct Members(Map<String, Value>);
+struct Members(Extra);
 
 impl Members {
-    fn any<T: DeserializeOwned>(&mut self, name: &str) -> Result<Option<T>, String> {
-        let found = self.0.remove(name).map(serde_json::from_value).transpose();
-        found.map_err(|error| alloc::format!("`{name}`: {error}"))
+    fn text(&mut self, name: &str) -> Result<String, String> {
+        match self.0.remove(name) {
+            Some(Value::String(text)) => Ok(text),
+            Some(_) => Err(alloc::format!("`{name}` is a text")),
+            None => Err(alloc::format!("missing field `{name}`")),
+        }
     }
 
-    fn number(&mut self, name: &str) -> Result<Option<i64>, String> {
-        self.any(name)
+    fn number(&mut self, name: &str, default: i64) -> Result<i64, String> {
+        let Some(value) = self.0.remove(name) else { return Ok(default) };
+        value.as_i64().ok_or_else(|| alloc::format!("`{name}` is a whole number"))
     }
 
-    fn needed(&mut self, name: &str) -> Result<String, String> {
-        self.any(name)?.ok_or_else(|| alloc::format!("missing field `{name}`"))
+    fn numbers(&mut self, name: &str) -> Result<Vec<i64>, String> {
+        let Some(value) = self.0.remove(name) else { return Ok(management_param()) };
+        let numbers = value.as_array().and_then(|all| all.iter().map(Value::as_i64).collect());
+        numbers.ok_or_else(|| alloc::format!("`{name}` is a list of whole numbers"))
+    }
+
+    fn dialect(&mut self) -> Result<Option<SendReqDialect>, String> {
+        match self.0.remove("Dialect").as_ref().map(|value| value.as_str()) {
+            None => Ok(None),
+            Some(Some("ETC100")) => Ok(Some(SendReqDialect::Etc100)),
+            Some(Some("ETC101")) => Ok(Some(SendReqDialect::Etc101)),
+            Some(_) => Err("`Dialect` is ETC100 or ETC101".to_string()),
+        }
     }
 }
 
