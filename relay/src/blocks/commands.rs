@@ -89,7 +89,7 @@ impl Blocks {
     /// A read that belongs to a write.
     async fn read(&self, actor: &Actor, block: &Block, plan: MessagePlan) -> Result<ReadValue, String> {
         let order = Order::read(actor.clone());
-        let ended = self.0.runner.pass(&block.config.name(), plan, order).await;
+        let ended = self.0.runner.pass(block.config.name(), plan, order).await;
         ended
             .map_err(|refused| refused.to_string())
             .and_then(|ended| ritual::found(&ended, block.config.req_layout()))

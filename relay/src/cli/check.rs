@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cipdeck_shared::config::write_hex;
+use cipdeck_shared::config::{write_hex, write_words};
 use cipdeck_shared::plan::MessagePlan;
 use clap::Args;
 
@@ -34,6 +34,10 @@ impl Check {
             report::findings(&findings);
             if let Some(plan) = &plan {
                 say(&format!("{} is ready to be sent: {}", config.name(), write_hex(plan.bytes())));
+                if let Some(words) = plan.words() {
+                    let data = write_words(&words.words);
+                    say(&format!("  Data_to_Send {data}, {} bytes of it", words.length));
+                }
             }
         }
         if plan.is_some() { Exit::SUCCESS } else { Exit::FINDINGS }

@@ -5,18 +5,21 @@ use cipdeck_shared::engine::{Cause, CauseKind, RefusedBy};
 use cipdeck_shared::table::{self, Entry};
 use cipdeck_shared::wire::{EncapsulationStatus, GeneralStatus};
 
-/// Sentences about a failed block, the most important first.
+/// Sentences about a failed block, the most important first. A block with words has reports instead of `ErrorID`s.
 pub(super) fn sentences(block: &BlockStatus) -> Vec<String> {
     let status = &block.status;
     let numbers = format!("ErrorID {} SubErrorID {}", status.error_id, status.sub_error_id);
     let mut sentences = Vec::new();
     if status.error_id == 224 {
         let general = GeneralStatus(u8::try_from(status.sub_error_id).unwrap_or(u8::MAX));
-        let what = format!(
-            "{numbers} ExtErrorID {}: {} refused with general status {general}",
-            status.ext_error_id,
-            who(block.cause.as_ref().and_then(|cause| cause.by))
-        );
+        let who = who(block.cause.as_ref().and_then(|cause| cause.by));
+        let what = match &block.words {
+            None => format!(
+                "{numbers} ExtErrorID {}: {who} refused with general status {general}",
+                status.ext_error_id
+            ),
+            Some(_) => format!("NOT a success: {who} refused with general status {general}"),
+        };
         sentences.push(entry(&what, table::general_status(general)));
         let extended = block.cause.as_ref().and_then(|cause| cause.additional.first());
         if let Some(word) = extended {
@@ -25,11 +28,11 @@ pub(super) fn sentences(block: &BlockStatus) -> Vec<String> {
                 table::extended_status(general, *word),
             ));
         }
-    } else {
+    } else if block.words.is_none() {
         sentences.push(entry(&numbers, table::block_error(status.error_id, status.sub_error_id)));
     }
     if let Some(cause) = &block.cause {
-        sentences.extend(happened(cause));
+        sentences.extend(happened(block, cause));
     }
     sentences
 }
@@ -45,7 +48,7 @@ fn who(by: Option<RefusedBy>) -> &'static str {
 }
 
 /// What happened beside the numbers.
-fn happened(cause: &Cause) -> Vec<String> {
+fn happened(block: &BlockStatus, cause: &Cause) -> Vec<String> {
     let mut sentences = Vec::new();
     let what = match &cause.what {
         CauseKind::Timeout => Some("The time ran out."),
@@ -59,6 +62,7 @@ fn happened(cause: &Cause) -> Vec<String> {
         CauseKind::Malformed => Some("The answer made no sense."),
         CauseKind::Closed => Some("The target closed the connection."),
         CauseKind::Limit => Some("All 16 sessions, or all 16 connections, of the controller are in use."),
+        CauseKind::TooSmall if block.words.is_some() => Some("The reply is longer than Received_Data."),
         CauseKind::TooSmall => Some("The reply is longer than ResDataSize."),
         CauseKind::Invalid => Some("The configuration has errors."),
         CauseKind::Cancelled => Some("It was cancelled."),
@@ -87,7 +91,7 @@ fn happened(cause: &Cause) -> Vec<String> {
 }
 
 /// `what: name. meaning. hint. (confidence)`
-fn entry(what: &str, entry: Option<Entry>) -> String {
+pub(super) fn entry(what: &str, entry: Option<Entry>) -> String {
     let Some(entry) = entry else { return format!("{what}: not in our tables.") };
     let parts = [entry.name, entry.meaning, entry.hint].into_iter().filter(|part| !part.is_empty());
     let parts: Vec<_> = parts.map(|part| part.trim_end_matches('.')).collect();

@@ -16,6 +16,7 @@ mod serve;
 mod simulate;
 mod tags;
 mod user;
+mod words;
 
 use std::process::ExitCode;
 

@@ -1,7 +1,7 @@
 //! What is printed about findings and about a message that has ended.
 
 use cipdeck_shared::api::{self, BlockStatus, Checked};
-use cipdeck_shared::config::{BlockConfig, space_hex, write_hex};
+use cipdeck_shared::config::{BlockConfig, SendReq, SendReqForm, space_hex, write_hex};
 use cipdeck_shared::dissect::{self, Decoded};
 use cipdeck_shared::plan::{Finding, MessagePlan, Severity};
 use cipdeck_shared::table;
@@ -9,7 +9,7 @@ use cipdeck_shared::tag::DataFields;
 use cipdeck_shared::wire::ServiceCode;
 use serde::Serialize;
 
-use super::explain;
+use super::{explain, words};
 
 /// All findings on stderr, one a line.
 pub(super) fn findings(findings: &[Finding]) {
@@ -38,6 +38,9 @@ pub(super) struct Report<'a> {
     response: Option<String>,
     /// What the reply's data means.
     decoded: Vec<Decoded>,
+    /// How the words are laid out, of a block that has some.
+    #[serde(skip)]
+    form: Option<SendReqForm>,
 }
 
 impl<'a> Report<'a> {
@@ -53,7 +56,12 @@ impl<'a> Report<'a> {
             // Empty: nobody has said.
             Err(_) => dissect::decode(request, response),
         };
-        Self { status, response: response.map(write_hex), decoded: response.map(decode).unwrap_or_default() }
+        Self {
+            status,
+            response: response.map(write_hex),
+            decoded: response.map(decode).unwrap_or_default(),
+            form: config.as_send_req().map(SendReq::form),
+        }
     }
 
     /// Whether the message failed.
@@ -70,11 +78,18 @@ impl<'a> Report<'a> {
     pub(super) fn line(&self) -> String {
         let elapsed = duration(self.status.elapsed_us);
         if self.status.status.error {
-            return format!("failed after {elapsed}: {}", explain::sentences(self.status).join(" "));
+            return format!("failed after {elapsed}: {}", self.sentences().join(" "));
         }
         let values: Vec<_> = self.decoded.iter().map(value).collect();
         let values = if values.is_empty() { "no data".to_owned() } else { values.join("; ") };
         format!("done in {elapsed}: {values}")
+    }
+
+    /// Why it failed; of a block with words its reports first.
+    fn sentences(&self) -> Vec<String> {
+        let reports =
+            self.status.words.as_ref().zip(self.form).map(|(status, form)| words::reports(status, form));
+        reports.into_iter().flatten().chain(explain::sentences(self.status)).collect()
     }
 
     /// For people.
@@ -90,6 +105,9 @@ impl<'a> Report<'a> {
             if self.decoded.is_empty() {
                 lines.push("  the reply has no data".to_owned());
             }
+        }
+        if let Some((status, form)) = self.status.words.as_ref().zip(self.form) {
+            lines.extend(words::lines(status, form).into_iter().map(|line| format!("  {line}")));
         }
         lines.push(format!("  request  {}", space_hex(&self.status.request)));
         if let Some(response) = &self.response {

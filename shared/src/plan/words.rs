@@ -8,6 +8,7 @@
 
 mod checks;
 mod fields;
+mod preset;
 mod rule;
 mod split;
 
@@ -19,6 +20,7 @@ use crate::table::{self, Access};
 use crate::wire::{LogicalKind, MessageRouterRequest, ServiceCode};
 
 pub use self::fields::{FieldsError, WordsFields, WordsObject, WordsPath};
+pub use self::preset::Preset;
 pub use self::rule::WordsRule;
 pub use self::split::{Split, SplitError};
 use super::checks::Checks;

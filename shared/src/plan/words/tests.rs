@@ -305,6 +305,23 @@ fn fields_are_named_and_what_is_no_object_stays_as_it_is() {
     }
 }
 
+#[test]
+fn every_preset_is_a_block_without_findings_in_every_form() {
+    for preset in Preset::ALL {
+        for form in SendReqForm::ALL {
+            let config = preset.block(form, [192, 168, 1, 102]);
+            let (plan, said) = checked(&config);
+            assert_eq!(said, [""; 0], "{} {form}", preset.id);
+            let device = Target::Network(Endpoint::of_ip([192, 168, 1, 102]));
+            assert_eq!(plan.unwrap().target(), &device);
+        }
+        assert_eq!(Preset::of_id(preset.id), Some(preset));
+    }
+    let read = Preset::of_id("modbus-read").unwrap().block(SendReqForm::Etc101, [192, 168, 1, 102]);
+    let words = "0000 C0A8 0166 024E 4420 0124 0000 000A";
+    assert_eq!((read.data_to_send.as_str(), read.management_param[3]), (words, 16));
+}
+
 #[cfg(not(target_arch = "wasm32"))]
 mod any {
     use super::*;
