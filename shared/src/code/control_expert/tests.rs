@@ -1,0 +1,216 @@
+//! The requests of the documents, in both directions.
+
+use super::{export, import};
+use crate::code::{Dialect, Found, Grade, Imported, Language};
+use crate::config::{BlockConfig, SendReq, SendReqForm, read_words};
+use crate::plan::{MessagePlan, Severity};
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+/// Requests that the documents' layouts give: the first to an identity object, the others a read of ten Modbus registers
+/// of 192.168.1.102.
+const GOLDEN: [(&str, &str, i64, SendReqForm, &str); 4] = [
+    ("ETC 100: product name", "0000 030E 0120 0124 0730", 10, SendReqForm::Etc100, "0e03200124013007"),
+    (
+        "ETC 101: registers",
+        "0000 C0A8 0166 024E 4420 0124 0000 000A",
+        16,
+        SendReqForm::Etc101,
+        "4e022044240100000a00",
+    ),
+    ("ETC 100: registers", "0000 024E 4420 0124 0000 000A", 12, SendReqForm::Etc100, "4e022044240100000a00"),
+    ("DATA_EXCH: registers", "024E 4420 0124 0000 000A", 10, SendReqForm::DataExch, "4e022044240100000a00"),
+];
+
+fn golden(index: usize) -> SendReq {
+    let (name, words, length, form, _) = GOLDEN[index];
+    let mut config = SendReq::new(form, name);
+    config.address = match form {
+        SendReqForm::Etc100 => "ADDR('0.2.0.192.168.1.102')",
+        SendReqForm::Etc101 => "ADDR('0.2.0')",
+        SendReqForm::DataExch => "ADDMX('0.3.0{192.168.1.102}UNC.CIP')",
+    }
+    .into();
+    config.data_to_send = words.into();
+    config.management_param = alloc::vec![0, 0, 30, length];
+    config
+}
+
+fn read(text: &str) -> Imported {
+    import(text, Dialect::SendReqEtc100)
+}
+
+fn only(text: &str) -> Found {
+    let mut imported = read(text);
+    assert_eq!(imported.blocks.len(), 1, "{text}\n{imported:?}");
+    assert!(
+        imported.remarks.iter().all(|remark| remark.severity == Severity::Note),
+        "{:?}",
+        imported.remarks
+    );
+    imported.blocks.remove(0)
+}
+
+fn request(config: &BlockConfig) -> (Vec<u8>, String, u32, bool) {
+    let plan = MessagePlan::of(config).0.unwrap();
+    (plan.bytes().to_vec(), plan.target().to_string(), plan.ucmm_timeout_ms(), plan.connection().is_some())
+}
+
+fn texts(found: &Found) -> String {
+    let said: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
+    said.join("\n")
+}
+
+#[test]
+fn pasted_words_make_the_right_block() {
+    for (title, words, length, form, message) in GOLDEN {
+        let row = alloc::format!("| {title} | {words} | {length} |");
+        let marked = words.replace(' ', ", 16#");
+        for text in [
+            words.to_string(),
+            alloc::format!("{words} {length}"),
+            alloc::format!("(* a comment *) 16#{marked}\n"),
+            words.replace(' ', "\n"),
+            row,
+        ] {
+            let found = only(&text);
+            let config = found.config.as_send_req().unwrap();
+            assert_eq!((config.form(), config.data_to_send.as_str()), (form, words), "{text}");
+            assert_eq!(config.management_param, [0, 0, 30, length], "{text}");
+            let plan = MessagePlan::of(&found.config).0.unwrap();
+            assert_eq!(crate::config::write_hex(plan.bytes()), message);
+            assert!(texts(&found).contains("recognised as"), "{}", texts(&found));
+        }
+    }
+}
+
+#[test]
+fn several_pasted_requests_are_several_blocks() {
+    let rows = GOLDEN.map(|(title, words, ..)| alloc::format!("{title}\t{words}")).join("\n");
+    let imported = read(&alloc::format!("| Case | Words |\n|---|---|\n{rows}\n0000 0BAD\n"));
+    assert_eq!(imported.blocks.len(), 4);
+    let forms: Vec<SendReqForm> =
+        imported.blocks.iter().map(|it| it.config.as_send_req().unwrap().form()).collect();
+    assert_eq!(forms, GOLDEN.map(|(_, _, _, form, _)| form));
+    assert_eq!(imported.blocks[2].config.name(), "ETC 100: registers");
+    let told: Vec<(usize, Severity)> = imported.remarks.iter().map(|it| (it.line, it.severity)).collect();
+    assert_eq!(told, [(1, Severity::Note), (7, Severity::Error)]);
+}
+
+#[test]
+fn a_section_says_all_of_a_request_in_both_languages() {
+    for (index, (_, words, ..)) in GOLDEN.into_iter().enumerate() {
+        for language in [Language::St, Language::Il] {
+            let block = BlockConfig::from(golden(index));
+            let code = export(&block, language);
+            assert!(code.changes.iter().all(|change| change.grade == Grade::Carried), "{:?}", code.changes);
+            let words = read_words(words).unwrap();
+            for word in words {
+                assert!(code.text.contains(&alloc::format!("16#{word:04X}")), "{}", code.text);
+            }
+            let found = only(&code.text);
+            let (was, is) = (block.as_send_req().unwrap(), found.config.as_send_req().unwrap());
+            assert_eq!(request(&found.config), request(&block), "{}", code.text);
+            let same = |config: &SendReq| {
+                (config.data_to_send.clone(), config.management_param.clone(), config.address.clone())
+            };
+            assert_eq!(same(is), same(was));
+            assert_eq!((is.form(), is.received_data_size), (was.form(), was.received_data_size));
+            assert_eq!(texts(&found).lines().count(), 1, "{}", texts(&found));
+        }
+    }
+}
+
+#[test]
+fn the_section_tests_the_activity_bit_and_reads_the_reports_when_it_falls() {
+    let mut config = golden(0);
+    config.name = "*) drive's (* \n current".into();
+    config.management_param[2] = 0;
+    let st = export(&config.clone().into(), Language::St).text;
+    for part in [
+        "(* * ) drive's ( *   current, SEND_REQ for TSX ETC 100 *)",
+        "IF drive_s_current_Start AND NOT drive_s_current_Last AND NOT drive_s_current_Mgmt[0].0 THEN",
+        "drive_s_current_Send[1] := 16#030E;  (* 782: service 16#0E = 14 Get_Attribute_Single, path of 3 words *)",
+        "drive_s_current_Mgmt[2] := 0;  (* 16#0000: waits FOR EVER *)",
+        "SEND_REQ(drive_s_current_Adr, 16#000E, drive_s_current_Send, drive_s_current_Mgmt, drive_s_current_Recv);",
+        "drive_s_current_Report := drive_s_current_Mgmt[1];",
+    ] {
+        assert!(st.contains(part), "{part}\n{st}");
+    }
+    let il = export(&config.into(), Language::Il).text;
+    assert!(il.contains("    LD drive_s_current_Adr\n    SEND_REQ 16#000E, drive_s_current_Send, "), "{il}");
+}
+
+#[test]
+fn hand_written_sections_are_read() {
+    let st = "(* lecture *)\nTab_Emis : ARRAY [0..4] OF INT := [0, 16#030E, 288, 2#1_0010_0100, 16#0730];\nTab_Gest : ARRAY [0.3] OF INT;\n\
+              Tab_Recp : ARRAY [0..99] OF INT;\nIF NOT Tab_Gest[1].0 THEN\n  Tab_Gest[2] := 20;\n  Tab_Gest[3] := 10;\n\
+              SEND_REQ (ADDR(‘0.2.0.192.168.1.102’), 14, Tab_Emis, Tab_Gest, Tab_Recp);\nEND_IF;\n";
+    let imported = read(st);
+    let config = imported.blocks[0].config.as_send_req().unwrap();
+    assert_eq!(config.data_to_send, GOLDEN[0].1);
+    assert_eq!(
+        (config.address.as_str(), config.management_param.as_slice()),
+        ("ADDR('0.2.0.192.168.1.102')", &[0, 0, 20, 10][..])
+    );
+    assert_eq!((config.received_data_size, config.name.as_str()), (100, "Tab"));
+    let told: Vec<(usize, bool)> =
+        imported.remarks.iter().map(|it| (it.line, it.to_string().contains("printed manual"))).collect();
+    assert!(told.contains(&(3, true)) && told.contains(&(5, true)), "{:?}", imported.remarks);
+
+    let mw = "%MW100 := 16#024E;\n%MW101 := 16#4420;\n%MW102 := 16#0124;\n%MW103 := 0;\n%MW104 := 10;\n%MW202 := 5;\n%MW203 := 10;\n\
+              DATA_EXCH(ADR := ADDMX('0.3.0{10.0.0.5}CON.CIP'), TYP := 1, EMIS := %MW100:5, GEST := %MW200:4, RECP => %MW300:60);\n";
+    let found = only(mw);
+    let config = found.config.as_send_req().unwrap();
+    assert_eq!((config.form(), config.data_to_send.as_str()), (SendReqForm::DataExch, GOLDEN[3].1));
+    assert_eq!((config.management_param.as_slice(), config.received_data_size), (&[0, 0, 5, 10][..], 60));
+    assert!(MessagePlan::of(&found.config).0.unwrap().connection().is_some());
+    assert_eq!(found.lines, 1..9);
+}
+
+#[test]
+fn what_is_not_known_of_a_call_is_told() {
+    let found = only("SEND_REQ(Adr, 14, Words, Mgmt, Recv);\n");
+    for part in [
+        "a constant Address is missing",
+        "nothing is known of the words of Words",
+        "it waits for ever",
+        "size of Recv",
+    ] {
+        assert!(texts(&found).contains(part), "{part}: {}", texts(&found));
+    }
+    let made =
+        only("S[0] := 0;\nS[1] := Speed;\nG[3] := 4;\nSEND_REQ(ADDR('0.2.0.10.0.0.1'), 14, S, G, R);\n");
+    assert!(texts(&made).contains("S[1] is not a constant"), "{}", texts(&made));
+    assert!(MessagePlan::of(&made.config).0.is_none());
+}
+
+#[test]
+fn a_table_without_a_call_is_read_if_it_is_a_request() {
+    let found =
+        only("Data_to_Send : ARRAY [0..4] OF INT := [16#0000, 16#030E, 16#0120, 16#0124, 16#0730];\n");
+    assert_eq!(found.config.as_send_req().unwrap().data_to_send, GOLDEN[0].1);
+    assert!(texts(&found).contains("no call uses these words"));
+    let found = only("%MW10 := 16#024E;\n%MW11 := 16#4420;\n%MW12 := 16#0124;\n%MW13 := 0;\n%MW14 := 10;\n");
+    assert_eq!(found.config.as_send_req().unwrap().form(), SendReqForm::DataExch);
+}
+
+#[test]
+fn any_text_ends() {
+    for text in [
+        "",
+        "(*",
+        "SEND_REQ(",
+        "SEND_REQ(((((",
+        "%MW",
+        "%MW99999999999999999999 := 1;",
+        "%MW18446744073709551615 := 1;\nSEND_REQ(a, 1, %MW18446744073709551615:2, %MW1:4, %MW2:1);",
+        "LD\nST",
+        "|||",
+        "a := a;\nSEND_REQ(a, a, a, a, a);",
+    ] {
+        assert!(read(text).remarks.len() + read(text).blocks.len() > 0, "{text}");
+    }
+    let many = "0000 030E 0120 0124 0730\n".repeat(2_000);
+    assert_eq!(read(&many).blocks.len(), 2_000);
+}
