@@ -3,6 +3,7 @@
 mod audit;
 mod backup;
 mod check;
+mod convert;
 mod discover;
 mod exit;
 mod explain;
@@ -83,6 +84,8 @@ enum Command {
     Restore(backup::Restore),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
+    /// Code of controllers and programs: from one language to another; losses and what is not understood on stderr.
+    Convert(convert::Convert),
 }
 
 /// The process, from its arguments to its exit code.
@@ -122,6 +125,7 @@ impl Cli {
             Command::Backup(backup) => backup.execute(),
             Command::Restore(restore) => restore.execute(),
             Command::Check(check) => check.execute(),
+            Command::Convert(convert) => convert.execute(),
         }
     }
 }

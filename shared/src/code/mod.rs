@@ -52,6 +52,9 @@ pub const MAX_TEXT: usize = 1024 * 1024;
 /// Messages that are imported at once.
 pub const MAX_BLOCKS: usize = 1000;
 
+/// Remarks about one text; a text with more is something else.
+const MAX_REMARKS: usize = 1000;
+
 /// How an export is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
@@ -142,6 +145,11 @@ pub fn import(text: &str, dialect: Option<Dialect>) -> Imported {
         imported.remarks.push(Remark::error(line, 1, "", RemarkKind::TooManyBlocks { limit }));
     }
     imported.remarks.sort_by_key(|remark| (remark.line, remark.column));
+    if let Some(first) = imported.remarks.get(MAX_REMARKS) {
+        let (line, more) = (first.line, imported.remarks.len() - MAX_REMARKS);
+        imported.remarks.truncate(MAX_REMARKS);
+        imported.remarks.push(Remark::error(line, 1, "", RemarkKind::TooManyRemarks { more }));
+    }
     imported
 }
 

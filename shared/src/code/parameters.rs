@@ -8,3 +8,8 @@ use super::remark::not_readable;
 pub(super) fn import(text: &str) -> Imported {
     not_readable(Dialect::CcwSt, text)
 }
+
+/// Whether a line is a row of such a table.
+pub(super) fn is_row(_line: &str) -> bool {
+    false
+}

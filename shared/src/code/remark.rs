@@ -72,6 +72,11 @@ pub enum RemarkKind {
         /// Messages.
         limit: usize,
     },
+    /// There is more to be said than anybody would read.
+    TooManyRemarks {
+        /// Remarks that are left out.
+        more: usize,
+    },
     /// This dialect is not read yet.
     NotReadable(Dialect),
     /// Anything else, in words.
@@ -146,6 +151,7 @@ impl fmt::Display for RemarkKind {
             Self::TooManyBlocks { limit } => {
                 write!(f, "a text has at most {limit} messages; those from here on were not read")
             }
+            Self::TooManyRemarks { more } => write!(f, "and {more} more remarks, from here on"),
             Self::NotReadable(dialect) => write!(f, "cipdeck does not read {} yet", dialect.title()),
             Self::Told(words) => f.write_str(words),
         }

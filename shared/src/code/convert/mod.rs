@@ -4,7 +4,7 @@
 //! before have told: a conversion that sends something else cannot stay silent.
 
 mod between;
-mod to_msg;
+pub(super) mod to_msg;
 mod to_words;
 
 use alloc::string::{String, ToString};

@@ -85,7 +85,7 @@ fn place(address: &str, changes: &mut Vec<Change>) {
 }
 
 /// Class, instance, attribute and members, in this order; false if the path is not made of these alone.
-fn object(path: &Epath, msg: &mut MsgCipGeneric) -> bool {
+pub(in crate::code) fn object(path: &Epath, msg: &mut MsgCipGeneric) -> bool {
     let mut kinds = Vec::new();
     let app = &mut msg.app_cfg;
     (app.class, app.instance, app.attribute, app.member_cnt) = (0, 0, 0, 0);

@@ -1,0 +1,205 @@
+//! `cipdeck convert`.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use cipdeck_shared::code::{Change, Dialect, Found, Language, Options, Remark, RemarkKind, export, import};
+use cipdeck_shared::plan::Severity;
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::{Exit, say};
+
+/// Messages from one language of controllers and programs to another.
+#[derive(Debug, Args)]
+pub(super) struct Convert {
+    /// Code with one or more messages; - = stdin
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// What it is written in; not given: each part of the text is recognised
+    #[arg(long, value_name = "DIALECT")]
+    from: Option<Dialect>,
+    /// What is written: json, ccw-st, l5x, send-req-etc100, send-req-etc101, data-exch, sysmac-st, pycomm3, rust,
+    /// cli or hex
+    #[arg(long, value_name = "DIALECT")]
+    to: Dialect,
+    /// Instruction List instead of Structured Text; for Control Expert only
+    #[arg(long)]
+    il: bool,
+    /// Fail (exit 2) where anything is lost, adjusted or not understood
+    #[arg(long)]
+    strict: bool,
+    /// For machines: {"blocks":[{"name":…,"from":…,"lines":[1,9],"code":…,"changes":[…],"remarks":[…]}],"remarks":[…]}
+    #[arg(long)]
+    json: bool,
+}
+
+impl Convert {
+    /// Reads, converts and prints: code on stdout, everything else on stderr.
+    pub(super) fn execute(self) -> Exit {
+        let text = match read(&self.file) {
+            Ok(text) => text,
+            Err(error) => return Exit::usage(&format!("{}: {error}", self.file.display())),
+        };
+        let options = Options { language: if self.il { Language::Il } else { Language::St } };
+        let imported = import(&text, self.from);
+        let converted: Vec<Converted> =
+            imported.blocks.iter().map(|found| Converted::new(found, self.to, &options)).collect();
+        if self.json {
+            say(&machine(&converted, &imported.remarks).to_string());
+        } else {
+            self.print(&converted, &imported.remarks);
+        }
+        let remarks = imported.remarks.iter().chain(imported.blocks.iter().flat_map(|found| &found.remarks));
+        let unread = remarks.clone().any(|remark| remark.severity == Severity::Error);
+        let lost = converted.iter().any(|it| it.changes.iter().any(Change::is_loss))
+            || remarks.clone().any(|it| matches!(&it.what, RemarkKind::Change(change) if change.is_loss()));
+        // What has no code cannot be sent: there is nothing to take home.
+        let missing = converted.iter().any(|it| it.code.trim().is_empty());
+        if imported.blocks.is_empty() && !self.json {
+            eprintln!("{}: no message was found", self.file.display());
+        }
+        if imported.blocks.is_empty() || missing || self.strict && (unread || lost) {
+            Exit::FINDINGS
+        } else {
+            Exit::SUCCESS
+        }
+    }
+
+    fn print(&self, converted: &[Converted], remarks: &[Remark]) {
+        let file = self.file.display();
+        for remark in remarks.iter().chain(converted.iter().flat_map(|it| &it.found.remarks)) {
+            eprintln!("{file}:{remark}");
+        }
+        for it in converted {
+            for change in it.changes.iter().filter(|change| change.is_loss()) {
+                eprintln!("{}: {change}", it.found.config.name());
+            }
+        }
+        say(joined(self.to, converted).trim_end());
+    }
+}
+
+/// One object of JSON, or an array of several; everything else one after the other.
+fn joined(to: Dialect, converted: &[Converted]) -> String {
+    let codes: Vec<&str> = converted.iter().map(|it| it.code.trim_end()).collect();
+    if to == Dialect::Json && codes.len() > 1 {
+        return format!("[\n{}\n]", codes.join(",\n"));
+    }
+    codes.join("\n\n")
+}
+
+/// A message, and what became of it.
+struct Converted<'a> {
+    found: &'a Found,
+    code: String,
+    changes: Vec<Change>,
+}
+
+impl<'a> Converted<'a> {
+    fn new(found: &'a Found, to: Dialect, options: &Options) -> Self {
+        let code = export(&found.config, to, options);
+        Self { found, code: code.text, changes: code.changes }
+    }
+}
+
+fn read(file: &Path) -> std::io::Result<String> {
+    // One more than is read: then the import says that it is too long.
+    let limit = cipdeck_shared::code::MAX_TEXT as u64 + 1;
+    let mut bytes = Vec::new();
+    if file.as_os_str() == "-" {
+        std::io::stdin().lock().take(limit).read_to_end(&mut bytes)?;
+    } else {
+        std::fs::File::open(file)?.take(limit).read_to_end(&mut bytes)?;
+    }
+    String::from_utf8(bytes).or_else(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let cut = error.as_bytes().len() as u64 == limit;
+        let line = error.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count() + 1;
+        match String::from_utf8_lossy(error.as_bytes()) {
+            // The limit has cut a character.
+            text if cut => Ok(text.into_owned()),
+            _ => Err(std::io::Error::other(format!("line {line} is not UTF-8"))),
+        }
+    })
+}
+
+fn machine(converted: &[Converted<'_>], remarks: &[Remark]) -> Value {
+    let blocks: Vec<Value> = converted
+        .iter()
+        .map(|it| {
+            json!({
+                "name": it.found.config.name(),
+                "from": it.found.dialect.name(),
+                "lines": [it.found.lines.start, it.found.lines.end - 1],
+                "code": it.code,
+                "changes": it.changes.iter().map(change).collect::<Vec<_>>(),
+                "remarks": it.found.remarks.iter().map(remark).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    json!({ "blocks": blocks, "remarks": remarks.iter().map(remark).collect::<Vec<_>>() })
+}
+
+fn change(change: &Change) -> Value {
+    json!({
+        "member": change.member,
+        "from": change.from,
+        "to": change.to,
+        "grade": change.grade.name(),
+        "why": change.why.name(),
+        "text": change.why.to_string(),
+    })
+}
+
+fn remark(remark: &Remark) -> Value {
+    json!({
+        "line": remark.line,
+        "column": remark.column,
+        "severity": remark.severity,
+        "excerpt": remark.excerpt,
+        "text": remark.what.to_string(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::act;
+
+    const NAME: &str = "0E 03 20 01 24 01 30 07\n";
+
+    async fn convert(text: &str, arguments: &[&str]) -> u8 {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("code.txt");
+        std::fs::write(&file, text).unwrap();
+        act(&[&["convert", file.to_str().unwrap()], arguments].concat()).await
+    }
+
+    #[tokio::test]
+    async fn what_is_understood_is_converted() {
+        assert_eq!(convert(NAME, &["--to", "json"]).await, 0);
+        assert_eq!(convert(NAME, &["--to", "hex", "--strict"]).await, 0);
+        assert_eq!(convert(NAME, &["--from", "hex", "--to", "json", "--json"]).await, 0);
+    }
+
+    #[tokio::test]
+    async fn nothing_found_and_with_strict_anything_lost_is_an_error() {
+        assert_eq!(convert("hello", &["--to", "json"]).await, 2);
+        assert_eq!(convert(NAME, &["--from", "json", "--to", "json"]).await, 2);
+        let with_more = format!("{NAME}hello\n");
+        assert_eq!(convert(&with_more, &["--to", "json"]).await, 0);
+        assert_eq!(convert(&with_more, &["--to", "json", "--strict"]).await, 2);
+        let wide = "0E 04 21 00 01 00 24 01 30 07";
+        assert_eq!(convert(wide, &["--to", "json"]).await, 0);
+        assert_eq!(convert(wide, &["--to", "json", "--strict"]).await, 2);
+    }
+
+    #[tokio::test]
+    async fn a_file_that_is_not_there_and_bytes_that_are_no_text_are_usage() {
+        assert_eq!(act(&["convert", "/nowhere/at/all", "--to", "json"]).await, 2);
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("code.txt");
+        std::fs::write(&file, b"a\n\xFF").unwrap();
+        assert_eq!(act(&["convert", file.to_str().unwrap(), "--to", "json"]).await, 2);
+    }
+}
