@@ -69,8 +69,11 @@ async fn three_changes_in_one_frame_render_one_row_once_and_the_other_never() {
     let asked = Rc::new(RefCell::new(Vec::<Box<dyn FnOnce()>>::new()));
     let ask = asked.clone();
     let rows = RowStore::new(Rc::new(move |flush| ask.borrow_mut().push(flush)));
-    let block =
-        |number| Block { id: BlockId(number), revision: 1, config: MsgCipGeneric::product_name("0,0") };
+    let block = |number| Block {
+        id: BlockId(number),
+        revision: 1,
+        config: MsgCipGeneric::product_name("0,0").into(),
+    };
     rows.snapshot(vec![block(1), block(2)], vec![]);
     let (relay, drafts) =
         (Relay::new(rows.clone(), Callback::noop()), DraftStore::new(None, Rc::new(|_| ())));

@@ -28,7 +28,7 @@ pub(super) fn changes(changes: &[Change]) -> Html {
         }
         if !carried.is_empty() {
             <details>
-                <summary>{ tr!("changes.carried_more", count = carried.len()) }</summary>
+                <summary>{ if carried.len() == 1 { tr!("changes.carried_one") } else { tr!("changes.carried_more", count = carried.len()) } }</summary>
                 { table(&carried) }
             </details>
         }

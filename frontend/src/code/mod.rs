@@ -67,6 +67,9 @@ pub fn CodePages() -> Html {
             <span class="bar-place">{ tr!("nav.code") }</span>
             <nav aria-label={tr!("nav.pages")}><ul>
                 { entry(Page::Import, page, tr!("nav.import")) }
+                if matches!(page, Page::Export(_)) {
+                    { entry(page, page, tr!("nav.export")) }
+                }
                 { entry(Page::Project, page, tr!("nav.project")) }
                 <li><a href="/">{ tr!("frame.workbench") }</a></li>
                 <li><a href="/words">{ tr!("frame.words") }</a></li>

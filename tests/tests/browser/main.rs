@@ -1,6 +1,7 @@
 //! Journeys through the page in headless Chromium against the real relay, with a screenshot of every stage. One
 //! binary, because each would link the whole relay again.
 
+mod code;
 mod connections;
 mod cyclic;
 mod data;

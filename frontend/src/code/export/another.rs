@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, rc::Rc};
 
 use cipdeck_shared::{
     api::Role,
-    code::{Converted, Grade, Kind, convert},
+    code::{Change, Converted, Grade, Kind, convert},
     config::{Block, BlockConfig},
     plan::MessagePlan,
 };
@@ -133,7 +133,7 @@ fn ticks(
     (before, after): (&BlockConfig, &BlockConfig),
 ) -> Vec<AttrValue> {
     let told: Vec<_> = converted.changes.iter().filter(|change| change.grade == Grade::Request).collect();
-    let mut ticks: Vec<_> = told.iter().map(|change| tr!("another.tick", change = change)).collect();
+    let mut ticks: Vec<_> = told.iter().map(|change| words(change)).collect();
     if told.is_empty() && differences.bytes {
         ticks.push(tr!("another.tick_bytes"));
     }
@@ -141,6 +141,12 @@ fn ticks(
         ticks.push(tr!("another.tick_target", to = after.target_text(), from = before.target_text()));
     }
     ticks
+}
+
+/// A change as somebody confirms it.
+fn words(change: &Change) -> AttrValue {
+    let to = if change.to.is_empty() { tr!("changes.nothing") } else { change.to.clone().into() };
+    tr!("another.tick", member = change.member, from = change.from, to = to, why = change.why)
 }
 
 fn tick(number: usize, words: &AttrValue, seen: &UseStateHandle<BTreeSet<usize>>) -> Html {
