@@ -9,6 +9,7 @@ use cipdeck_shared::api::{Finding, Problem, ProblemCode};
 use cipdeck_shared::config::{Block, BlockId};
 
 use crate::history::HistoryError;
+use crate::project::FilesError;
 use crate::runner::Refused;
 use crate::store::StoreError;
 
@@ -169,7 +170,12 @@ impl From<Refused> for ApiError {
 impl From<StoreError> for ApiError {
     fn from(error: StoreError) -> Self {
         match error {
-            StoreError::Closed => Self::Unavailable(error.to_string()),
+            StoreError::Closed | StoreError::Files(FilesError::Write { .. }) => {
+                Self::Unavailable(error.to_string())
+            }
+            StoreError::Files(FilesError::Conflict { .. }) | StoreError::TooMany(_) => {
+                Self::Conflict(error.to_string())
+            }
             error => Self::Internal(error.to_string()),
         }
     }
@@ -216,6 +222,9 @@ pub enum RunError {
     /// The database cannot be used.
     #[error("{0}")]
     Store(String),
+    /// The project's folder says something that cannot be, or cannot be written.
+    #[error("{0}")]
+    Project(String),
     /// The audit cannot even be opened.
     #[error("{0}")]
     Audit(String),

@@ -29,6 +29,7 @@ mod owner;
 mod permit;
 mod plant;
 mod private;
+mod project;
 mod ritual;
 mod runner;
 mod shutdown;
@@ -43,9 +44,12 @@ mod ws;
 mod tests;
 
 use std::future::Future;
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use cipdeck_shared::api::ProjectChange;
+use cipdeck_shared::config::project::read;
 use cipdeck_shared::sim::{Device, SimConfig};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
@@ -60,6 +64,7 @@ use self::history::History;
 use self::listen::{Doors, Listening, Seats, Site};
 use self::permit::{Gate, Policy, RuleError, permit};
 use self::plant::Plant;
+use self::project::{FilesError, Folder};
 use self::runner::Guard;
 pub use self::settings::Settings;
 use self::store::{Store, StoredLists};
@@ -117,6 +122,9 @@ async fn serve_with(
         None => RunError::Store(format!("{error}")),
     };
     let store = Store::open(database.as_deref()).await.map_err(no_store)?;
+    if let Some(folder) = &settings.project {
+        join(&store, folder).await?;
+    }
     let history = History::open(settings.data.as_deref(), settings.history).await;
     // After the store, which only one relay can have.
     let audit = Audit::open(settings.data.as_deref()).map_err(|error| RunError::Audit(error.to_string()))?;
@@ -174,6 +182,28 @@ async fn serve_with(
         tracing::info!("some connections were held open; everything of value is safe");
     }
     result
+}
+
+/// The folder of the project becomes what is stored, and is kept from now on.
+async fn join(store: &Store, folder: &Path) -> Result<(), RunError> {
+    let wrong = |error: &dyn std::fmt::Display| RunError::Project(format!("{}: {error}", folder.display()));
+    let opened = Folder::open(folder).map_err(|error| wrong(&error))?;
+    let read = read(opened.files());
+    if !read.errors.is_empty() {
+        return Err(wrong(&FilesError::Wrong(read.errors)));
+    }
+    for finding in project::findings(opened.files(), &read) {
+        tracing::warn!(file = finding.field, "project: {}", finding.message);
+    }
+    let version = read.version;
+    let outcome = store.join(opened, read).await.map_err(|error| wrong(&error))?;
+    for part in outcome.parts {
+        if part.how != ProjectChange::Unchanged {
+            tracing::info!(what = ?part.what, how = ?part.how, name = part.name, id = part.id, file = part.file, "project");
+        }
+    }
+    tracing::info!(folder = %folder.display(), version, "project");
+    Ok(())
 }
 
 /// What is answered, wherever that will be.

@@ -1,6 +1,7 @@
 //! Blocks as REST, WebSocket and start-up use them: stored first, then run, then told to viewers.
 
 mod commands;
+mod project;
 
 use std::future::Future;
 use std::sync::Arc;

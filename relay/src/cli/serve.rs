@@ -21,6 +21,9 @@ pub(super) struct Serve {
     /// Folder of the database. [default: cipdeck in your folder for application data]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
+    /// Folder of a project: blocks and devices as small files for version control. Without --data only they are kept
+    #[arg(long, value_name = "DIR")]
+    project: Option<PathBuf>,
     /// Whoever is at this machine acts as viewer, operator, engineer or admin, without signing in. Loopback only
     #[arg(long, value_name = "ROLE", value_parser = role)]
     local: Option<Role>,
@@ -45,6 +48,7 @@ impl Serve {
         let flags = Given {
             listen: self.listen,
             data: self.data,
+            project: self.project,
             log: logging.log,
             log_format: logging.log_format,
             local: self.local.map(|role| Local { role }),
@@ -61,6 +65,7 @@ impl Serve {
         }
         match listen_and_run(settings).await {
             Ok(()) => Exit::SUCCESS,
+            Err(error @ RunError::Project(_)) => Exit::usage(&error),
             Err(error) => Exit::internal(&error),
         }
     }

@@ -30,7 +30,7 @@ pub(super) async fn list(State(app): State<App>) -> Answer<Vec<Block>> {
     path = "/blocks",
     tag = "blocks",
     request_body = Draft,
-    extensions(("x-cipdeck-problems" = json!(["findings"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings"]))),
     responses((status = 201, description = "The block as it was stored", body = Block, headers(("location" = String, description = "Where the block is"))))
 )]
 pub(super) async fn create(
@@ -62,7 +62,7 @@ pub(super) async fn show(State(app): State<App>, Id(id): Id) -> Result<Answer<Bl
     tag = "blocks",
     params(("id" = BlockId, Path, description = "The block")),
     request_body = Draft,
-    extensions(("x-cipdeck-problems" = json!(["findings", "stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings", "stale_revision"]))),
     responses((status = 200, description = "The block as it was stored", body = Block))
 )]
 pub(super) async fn replace(
@@ -83,7 +83,7 @@ pub(super) async fn replace(
         ("id" = BlockId, Path, description = "The block"),
         ("revision" = u64, Query, description = "The revision that was seen"),
     ),
-    extensions(("x-cipdeck-problems" = json!(["stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "stale_revision"]))),
     responses((status = 204, description = "It is gone"))
 )]
 pub(super) async fn delete(

@@ -34,6 +34,7 @@ use crate::access::{CSRF_HEADER, SESSION_COOKIE, VIEW_COOKIE};
         (name = "devices", description = "Devices, groups, variables and their values"),
         (name = "history", description = "Every run of every block"),
         (name = "lists", description = "What may be reached and written"),
+        (name = "project", description = "Blocks, devices and groups as files"),
         (name = "relay", description = "The relay itself"),
         (name = "writing", description = "The write window and the tickets")
     )

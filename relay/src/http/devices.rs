@@ -62,7 +62,7 @@ pub(super) async fn show(
     tag = "devices",
     params(("id" = DeviceId, Path, description = "The device")),
     request_body = Device,
-    extensions(("x-cipdeck-problems" = json!(["findings", "stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings", "stale_revision"]))),
     responses((status = 200, description = "The device as it was stored", body = Device))
 )]
 pub(super) async fn replace(
@@ -83,7 +83,7 @@ pub(super) async fn replace(
         ("id" = DeviceId, Path, description = "The device"),
         ("revision" = u64, Query, description = "The revision that was seen"),
     ),
-    extensions(("x-cipdeck-problems" = json!(["stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "stale_revision"]))),
     responses((status = 204, description = "It is gone"))
 )]
 pub(super) async fn delete(

@@ -11,6 +11,7 @@ use futures_util::StreamExt;
 use serde::de::DeserializeOwned;
 
 use crate::error::ApiError;
+use crate::project::MAX_ARCHIVE;
 
 /// Bytes of a body.
 const MAX_BODY: usize = 1024 * 1024;
@@ -28,6 +29,10 @@ pub(super) struct Json<T>(pub(super) T);
 /// A body as JSON; without a body the default.
 #[derive(Debug)]
 pub(super) struct OptionalJson<T>(pub(super) T);
+
+/// A zip archive.
+#[derive(Debug)]
+pub(super) struct Archive(pub(super) Vec<u8>);
 
 /// The block in the address.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +62,15 @@ impl<S: Sync, T: DeserializeOwned> FromRequest<S> for Json<T> {
     type Rejection = ApiError;
 
     async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
-        parse(&body(request).await?).map(Self)
+        parse(&body(request, MAX_BODY).await?).map(Self)
+    }
+}
+
+impl<S: Sync> FromRequest<S> for Archive {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
+        body(request, MAX_ARCHIVE).await.map(Self)
     }
 }
 
@@ -65,7 +78,7 @@ impl<S: Sync, T: DeserializeOwned + Default> FromRequest<S> for OptionalJson<T> 
     type Rejection = ApiError;
 
     async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
-        let body = body(request).await?;
+        let body = body(request, MAX_BODY).await?;
         if body.iter().all(u8::is_ascii_whitespace) { Ok(Self(T::default())) } else { parse(&body).map(Self) }
     }
 }
@@ -135,25 +148,25 @@ impl<S: Sync> FromRequestParts<S> for Revision {
     }
 }
 
-async fn body(request: Request) -> Result<Vec<u8>, ApiError> {
+async fn body(request: Request, most: usize) -> Result<Vec<u8>, ApiError> {
     let late = |_| ApiError::Unreadable(format!("the body did not arrive within {} s", TO_ARRIVE.as_secs()));
-    tokio::time::timeout(TO_ARRIVE, arriving(request)).await.map_err(late)?
+    tokio::time::timeout(TO_ARRIVE, arriving(request, most)).await.map_err(late)?
 }
 
-async fn arriving(request: Request) -> Result<Vec<u8>, ApiError> {
+async fn arriving(request: Request, most: usize) -> Result<Vec<u8>, ApiError> {
     let mut chunks = request.into_body().into_data_stream();
     let (mut body, mut length) = (Vec::new(), 0_usize);
     while let Some(chunk) = chunks.next().await {
         let chunk =
             chunk.map_err(|error| ApiError::Unreadable(format!("the body did not arrive: {error}")))?;
         length = length.saturating_add(chunk.len());
-        if length <= MAX_BODY {
+        if length <= most {
             body.extend_from_slice(&chunk);
         } else if length > MAX_DRAINED {
             break;
         }
     }
-    if length > MAX_BODY { Err(ApiError::TooLarge(MAX_BODY)) } else { Ok(body) }
+    if length > most { Err(ApiError::TooLarge(most)) } else { Ok(body) }
 }
 
 /// Everything that the relay takes is an object. Read into a structure, an array would do, too: its members without
@@ -177,7 +190,7 @@ mod tests {
     async fn a_body_that_does_not_end_is_given_up() {
         let beginning = futures_util::stream::iter([Ok::<_, std::io::Error>("{")]);
         let endless = Body::from_stream(beginning.chain(futures_util::stream::pending()));
-        let refused = body(Request::new(endless)).await.unwrap_err();
+        let refused = body(Request::new(endless), MAX_BODY).await.unwrap_err();
         assert!(refused.to_string().contains("within 30 s"), "{refused}");
     }
 

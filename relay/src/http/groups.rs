@@ -37,7 +37,7 @@ pub(super) async fn create(
     tag = "devices",
     params(("id" = GroupId, Path, description = "The group")),
     request_body = Group,
-    extensions(("x-cipdeck-problems" = json!(["findings", "stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings", "stale_revision"]))),
     responses((status = 200, description = "The group as it was stored", body = Group))
 )]
 pub(super) async fn replace(
@@ -58,7 +58,7 @@ pub(super) async fn replace(
         ("id" = GroupId, Path, description = "The group"),
         ("revision" = u64, Query, description = "The revision that was seen"),
     ),
-    extensions(("x-cipdeck-problems" = json!(["stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "stale_revision"]))),
     responses((status = 204, description = "It is gone"))
 )]
 pub(super) async fn delete(
@@ -108,7 +108,7 @@ pub(super) async fn variables(
     tag = "devices",
     params(("id" = GroupId, Path, description = "The group")),
     request_body = NewVariables,
-    extensions(("x-cipdeck-problems" = json!(["findings"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings"]))),
     responses((status = 201, description = "The variables as they were stored", body = Vec<Variable>))
 )]
 pub(super) async fn add(
@@ -148,7 +148,7 @@ pub(super) async fn csv(
     tag = "devices",
     params(("id" = GroupId, Path, description = "The group")),
     request_body = VariablesCsv,
-    extensions(("x-cipdeck-problems" = json!(["findings"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings"]))),
     responses((status = 201, description = "The variables as they were stored", body = Vec<Variable>))
 )]
 pub(super) async fn add_csv(

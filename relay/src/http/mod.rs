@@ -19,6 +19,7 @@ mod history;
 mod metrics;
 mod need;
 mod observe;
+mod project;
 mod targets;
 mod variables;
 mod write;
@@ -94,6 +95,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(allow::remove_target))
         .routes(routes!(allow::writes, allow::add_write))
         .routes(routes!(allow::remove_write))
+        .routes(routes!(project::export, project::import))
         .routes(routes!(live::upgrade))
         .routes(routes!(devices::list, devices::create))
         .routes(routes!(devices::show, devices::replace, devices::delete))

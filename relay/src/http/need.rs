@@ -91,6 +91,8 @@ pub(crate) const NEEDS: &[(&str, &str, Need)] = &[
     ("GET", "/api/v1/history/trend", Look),
     ("GET", "/api/v1/history/state", Look),
     ("GET", "/api/v1/live", Look),
+    ("GET", "/api/v1/project", Look),
+    ("POST", "/api/v1/project", Edit),
     ("GET", "/api/v1/devices", Look),
     ("POST", "/api/v1/devices", Edit),
     ("GET", "/api/v1/devices/{id}", Look),
@@ -222,7 +224,7 @@ fn permitted(app: &App, request: &Request, need: Need, known: Option<&Known>) ->
         need.check(actor.kind(), role).map_err(|why| ApiError::NotPermitted(why.to_owned()))?;
     }
     if !matches!(*request.method(), Method::GET | Method::HEAD) {
-        from_our_page(request, known)?;
+        from_our_page(request, known, body_type(request))?;
         if let Some(known) = known {
             known.actor.touch();
         }
@@ -237,9 +239,23 @@ pub(super) fn peer(request: &Request) -> IpAddr {
     peer.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |peer| peer.ip())
 }
 
-/// A foreign page can make a browser send its cookies, and forms. It cannot read our token, and no form is JSON.
-/// `Origin` has been checked already.
-fn from_our_page(request: &Request, known: Option<&Known>) -> Result<(), ApiError> {
+/// What the body of a request has to be.
+fn body_type(request: &Request) -> (&'static str, &'static str) {
+    let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
+    if route == Some(super::project::ROUTE) {
+        ("a zip archive", "application/zip")
+    } else {
+        ("JSON", "application/json")
+    }
+}
+
+/// A foreign page can make a browser send its cookies, and forms. It cannot read our token, and no form is JSON or an
+/// archive. `Origin` has been checked already.
+fn from_our_page(
+    request: &Request,
+    known: Option<&Known>,
+    (what, body_type): (&str, &str),
+) -> Result<(), ApiError> {
     let headers = request.headers();
     if known.is_some_and(|known| known.actor.kind() == ActorKind::Token) {
         return Ok(());
@@ -255,10 +271,10 @@ fn from_our_page(request: &Request, known: Option<&Known>) -> Result<(), ApiErro
     }
     let content_type = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
     let essence = content_type.and_then(|text| text.split(';').next()).unwrap_or_default().trim();
-    if !request.body().is_end_stream() && !essence.eq_ignore_ascii_case("application/json") {
-        return Err(ApiError::Unreadable(
-            "the body has to be JSON: send Content-Type: application/json".to_owned(),
-        ));
+    if !request.body().is_end_stream() && !essence.eq_ignore_ascii_case(body_type) {
+        return Err(ApiError::Unreadable(format!(
+            "the body has to be {what}: send Content-Type: {body_type}"
+        )));
     }
     Ok(())
 }

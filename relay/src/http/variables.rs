@@ -18,7 +18,7 @@ use crate::error::ApiError;
     tag = "devices",
     params(("id" = VariableId, Path, description = "The variable")),
     request_body = Variable,
-    extensions(("x-cipdeck-problems" = json!(["findings", "stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings", "stale_revision"]))),
     responses((status = 200, description = "The variable as it was stored", body = Variable))
 )]
 pub(super) async fn replace(
@@ -39,7 +39,7 @@ pub(super) async fn replace(
         ("id" = VariableId, Path, description = "The variable"),
         ("revision" = u64, Query, description = "The revision that was seen"),
     ),
-    extensions(("x-cipdeck-problems" = json!(["stale_revision"]))),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "stale_revision"]))),
     responses((status = 204, description = "It is gone"))
 )]
 pub(super) async fn delete(

@@ -23,6 +23,7 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 use self::browse::Browsing;
+pub(crate) use self::edit::{MAX_DEVICES, MAX_GROUPS};
 use self::entries::Entries;
 pub(crate) use self::hub::{Hub, Seen};
 use self::poll::Work;

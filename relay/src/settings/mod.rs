@@ -35,6 +35,8 @@ pub struct Settings {
     pub listen: SocketAddr,
     /// The folder of the database; `None` keeps blocks in memory and loses them at the end.
     pub data: Option<PathBuf>,
+    /// The folder of the project: blocks and devices as files; `None` = there is none.
+    pub project: Option<PathBuf>,
     /// Which log records are written: a level, or `target=level` separated by commas.
     pub log: String,
     /// How log records are written.
@@ -72,6 +74,8 @@ pub struct Given {
     pub listen: Option<SocketAddr>,
     /// `data = "/var/lib/cipdeck"`
     pub data: Option<PathBuf>,
+    /// `project = "/srv/plant"`
+    pub project: Option<PathBuf>,
     /// `log = "info,cipdeck_relay=debug"`
     pub log: Option<String>,
     /// `log_format = "json"`
@@ -99,6 +103,7 @@ impl Settings {
         Self {
             listen: DEFAULT_LISTEN,
             data: None,
+            project: None,
             log: DEFAULT_LOG.to_owned(),
             log_format: LogFormat::default(),
             history: HistorySettings::default(),
@@ -130,10 +135,16 @@ impl Settings {
 
     /// What the flags say, then what the file says, then the defaults.
     pub fn resolve(flags: Given, file: Given) -> Result<Self, SettingsError> {
-        let data = flags.data.or(file.data).or_else(default_data).ok_or(SettingsError::NoDataFolder)?;
+        let (data, project) = (flags.data.or(file.data), flags.project.or(file.project));
+        // A project needs no database: its files are what is kept.
+        let data = match (data, &project) {
+            (None, None) => Some(default_data().ok_or(SettingsError::NoDataFolder)?),
+            (data, _) => data,
+        };
         Ok(Self {
             listen: flags.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN),
-            data: Some(data),
+            data,
+            project,
             log: flags.log.or(file.log).unwrap_or_else(|| DEFAULT_LOG.to_owned()),
             log_format: flags.log_format.or(file.log_format).unwrap_or_default(),
             history: flags.history.or(file.history).unwrap_or_default().checked()?,
@@ -284,6 +295,7 @@ mod tests {
         let keys = [
             "listen",
             "data",
+            "project",
             "log",
             "log_format",
             "history.enabled",
@@ -306,8 +318,11 @@ mod tests {
         // The example in the document holds every key and is accepted as it stands.
         let example = text.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let given = Given::parse(example).unwrap();
-        let Given { listen, data, log, log_format, history, local, allow, allow_hosts, tls, limits } = given;
-        assert!(listen.is_some() && data.is_some() && log.is_some() && log_format.is_some());
+        let Given { listen, data, project, log, log_format, history, local, allow, allow_hosts, tls, limits } =
+            given;
+        assert!(
+            listen.is_some() && data.is_some() && project.is_some() && log.is_some() && log_format.is_some()
+        );
         assert_eq!(history, Some(HistorySettings::default()), "the example shows the defaults");
         assert!(local.is_some() && limits != Limits::default());
         assert_eq!((allow.target.len(), allow.write.len()), (1, 1));

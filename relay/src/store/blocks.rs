@@ -3,7 +3,9 @@
 use cipdeck_shared::config::{Block, BlockConfig, BlockId};
 use rusqlite::{Connection, OptionalExtension};
 
+use super::beside::Beside;
 use super::{Store, StoreError};
+use crate::project::Touched;
 
 /// A block as it lies in the database.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +35,8 @@ impl Store {
 
     /// Stores a new block under a fresh id.
     pub(crate) async fn insert(&self, config: BlockConfig) -> Result<Block, StoreError> {
-        self.0.call(|connection| insert(connection, config)).await
+        let beside = self.1.clone();
+        self.0.call(move |connection| insert(connection, &beside, config)).await
     }
 
     /// Replaces revision `revision` of a block.
@@ -43,12 +46,14 @@ impl Store {
         revision: u64,
         config: BlockConfig,
     ) -> Result<Change, StoreError> {
-        self.0.call(move |connection| replace(connection, id, revision, config)).await
+        let beside = self.1.clone();
+        self.0.call(move |connection| replace(connection, &beside, id, revision, config)).await
     }
 
     /// Deletes revision `revision` of a block.
     pub(crate) async fn delete(&self, id: BlockId, revision: u64) -> Result<Change, StoreError> {
-        self.0.call(move |connection| delete(connection, id, revision)).await
+        let beside = self.1.clone();
+        self.0.call(move |connection| delete(connection, &beside, id, revision)).await
     }
 
     /// Remembers IN for a block that resumes.
@@ -97,17 +102,19 @@ fn load(connection: &Connection) -> Result<Vec<Stored>, StoreError> {
     Ok(all)
 }
 
-fn insert(connection: &Connection, config: BlockConfig) -> Result<Block, StoreError> {
+fn insert(connection: &Connection, beside: &Beside, config: BlockConfig) -> Result<Block, StoreError> {
     let text = serde_json::to_string(&config)?;
     let transaction = connection.unchecked_transaction()?;
     transaction.execute("INSERT INTO block (revision, config) VALUES (1, ?1)", [text])?;
     let id = u32::try_from(transaction.last_insert_rowid()).map_err(|_| StoreError::NoIds)?;
-    transaction.commit()?;
-    Ok(Block { id: BlockId(id), revision: 1, config })
+    let id = BlockId(id);
+    beside.commit(transaction, &[Touched::Block(id)])?;
+    Ok(Block { id, revision: 1, config })
 }
 
 fn replace(
     connection: &mut Connection,
+    beside: &Beside,
     id: BlockId,
     revision: u64,
     config: BlockConfig,
@@ -122,16 +129,21 @@ fn replace(
         "UPDATE block SET revision = ?2, config = ?3 WHERE id = ?1",
         (id.0, Revision::from(block.revision).0, text),
     )?;
-    transaction.commit()?;
+    beside.commit(transaction, &[Touched::Block(id)])?;
     Ok(Change::Done(block))
 }
 
-fn delete(connection: &mut Connection, id: BlockId, revision: u64) -> Result<Change, StoreError> {
+fn delete(
+    connection: &mut Connection,
+    beside: &Beside,
+    id: BlockId,
+    revision: u64,
+) -> Result<Change, StoreError> {
     let transaction = connection.transaction()?;
     let change = change(&transaction, id, revision)?;
     if matches!(change, Change::Done(_)) {
         transaction.execute("DELETE FROM block WHERE id = ?1", [id.0])?;
-        transaction.commit()?;
+        beside.commit(transaction, &[Touched::Block(id)])?;
     }
     Ok(change)
 }

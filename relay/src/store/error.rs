@@ -1,5 +1,7 @@
 //! What can go wrong with the database.
 
+use crate::project::FilesError;
+
 /// Why a block could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StoreError {
@@ -26,6 +28,12 @@ pub(crate) enum StoreError {
     /// A configuration that is no JSON any more.
     #[error("something that was stored cannot be read: {0}")]
     Json(#[from] serde_json::Error),
+    /// The files of the project.
+    #[error("{0}")]
+    Files(#[source] FilesError),
+    /// A project that does not fit beside what is there.
+    #[error("{0}")]
+    TooMany(String),
     /// The system gives no random numbers.
     #[error("{0}")]
     Secrets(String),

@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::{Store, StoreError};
+use crate::project::Touched;
 
 /// Everything that is stored about devices.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,6 +47,7 @@ impl Store {
         config: DeviceConfig,
         groups: Vec<(GroupConfig, Vec<Fresh>)>,
     ) -> Result<StoredPlant, StoreError> {
+        let beside = self.1.clone();
         self.0
             .call(move |connection| {
                 let transaction = connection.transaction()?;
@@ -59,7 +61,7 @@ impl Store {
                     made.variables.extend(add_variables(&transaction, group.id, variables)?);
                     made.groups.push(group);
                 }
-                transaction.commit()?;
+                beside.commit(transaction, &[Touched::Device(device.id)])?;
                 Ok(made)
             })
             .await
@@ -68,21 +70,23 @@ impl Store {
     /// A device as it is now.
     pub(crate) async fn put_device(&self, device: Device) -> Result<(), StoreError> {
         let Device { id, revision, config } = device;
-        self.put("UPDATE device SET revision = ?2, config = ?3 WHERE id = ?1", id.0, revision, config).await
+        let update = "UPDATE device SET revision = ?2, config = ?3 WHERE id = ?1";
+        self.put(update, id.0, revision, config, Touched::Device(id)).await
     }
 
     /// A device less, with all that belongs to it.
     pub(crate) async fn remove_device(&self, id: DeviceId) -> Result<(), StoreError> {
-        self.remove_all("DELETE FROM device WHERE id = ?1", vec![id.0]).await
+        self.remove_all("DELETE FROM device WHERE id = ?1", vec![id.0], vec![Touched::Device(id)]).await
     }
 
     /// A new group.
     pub(crate) async fn add_group(&self, config: GroupConfig) -> Result<Group, StoreError> {
+        let beside = self.1.clone();
         self.0
             .call(move |connection| {
                 let transaction = connection.transaction()?;
                 let group = add_group(&transaction, config)?;
-                transaction.commit()?;
+                beside.commit(transaction, &[Touched::Group(group.id)])?;
                 Ok(group)
             })
             .await
@@ -92,12 +96,13 @@ impl Store {
     pub(crate) async fn put_group(&self, group: Group) -> Result<(), StoreError> {
         let Group { id, revision, config } = group;
         let update = "UPDATE variable_group SET revision = ?2, config = ?3 WHERE id = ?1";
-        self.put(update, id.0, revision, config).await
+        self.put(update, id.0, revision, config, Touched::Group(id)).await
     }
 
     /// A group less, with its variables.
     pub(crate) async fn remove_group(&self, id: GroupId) -> Result<(), StoreError> {
-        self.remove_all("DELETE FROM variable_group WHERE id = ?1", vec![id.0]).await
+        let delete = "DELETE FROM variable_group WHERE id = ?1";
+        self.remove_all(delete, vec![id.0], vec![Touched::Group(id)]).await
     }
 
     /// New variables of a group: all of them or none.
@@ -106,11 +111,12 @@ impl Store {
         group: GroupId,
         fresh: Vec<Fresh>,
     ) -> Result<Vec<Variable>, StoreError> {
+        let beside = self.1.clone();
         self.0
             .call(move |connection| {
                 let transaction = connection.transaction()?;
                 let variables = add_variables(&transaction, group, fresh)?;
-                transaction.commit()?;
+                beside.commit(transaction, &[Touched::Group(group)])?;
                 Ok(variables)
             })
             .await
@@ -118,14 +124,19 @@ impl Store {
 
     /// A variable as it is now.
     pub(crate) async fn put_variable(&self, variable: Variable) -> Result<(), StoreError> {
-        let Variable { id, revision, config, .. } = variable;
-        self.put("UPDATE variable SET revision = ?2, config = ?3 WHERE id = ?1", id.0, revision, config).await
+        let Variable { id, revision, group, config } = variable;
+        let update = "UPDATE variable SET revision = ?2, config = ?3 WHERE id = ?1";
+        self.put(update, id.0, revision, config, Touched::Group(group)).await
     }
 
-    /// Variables less.
-    pub(crate) async fn remove_variables(&self, ids: Vec<VariableId>) -> Result<(), StoreError> {
+    /// Variables of a group less.
+    pub(crate) async fn remove_variables(
+        &self,
+        group: GroupId,
+        ids: Vec<VariableId>,
+    ) -> Result<(), StoreError> {
         let ids = ids.into_iter().map(|id| id.0).collect();
-        self.remove_all("DELETE FROM variable WHERE id = ?1", ids).await
+        self.remove_all("DELETE FROM variable WHERE id = ?1", ids, vec![Touched::Group(group)]).await
     }
 
     /// What was written to a device; the oldest are forgotten.
@@ -165,24 +176,33 @@ impl Store {
         id: u32,
         revision: u64,
         config: impl Serialize + Send + 'static,
+        touched: Touched,
     ) -> Result<(), StoreError> {
+        let beside = self.1.clone();
         self.0
             .call(move |connection| {
+                let transaction = connection.transaction()?;
                 let revision = i64::try_from(revision).unwrap_or(i64::MAX);
-                connection.execute(update, (id, revision, json(&config)?))?;
-                Ok(())
+                transaction.execute(update, (id, revision, json(&config)?))?;
+                beside.commit(transaction, &[touched])
             })
             .await
     }
 
-    async fn remove_all(&self, delete: &'static str, ids: Vec<u32>) -> Result<(), StoreError> {
+    async fn remove_all(
+        &self,
+        delete: &'static str,
+        ids: Vec<u32>,
+        touched: Vec<Touched>,
+    ) -> Result<(), StoreError> {
+        let beside = self.1.clone();
         self.0
             .call(move |connection| {
                 let transaction = connection.transaction()?;
                 for id in ids {
                     transaction.execute(delete, [id])?;
                 }
-                Ok(transaction.commit()?)
+                beside.commit(transaction, &touched)
             })
             .await
     }

@@ -12,6 +12,7 @@ const MIGRATIONS: &[&str] = &[
     include_str!("migrations/0002_allow.sql"),
     include_str!("migrations/0003_access.sql"),
     include_str!("migrations/0004_plant.sql"),
+    include_str!("migrations/0005_project.sql"),
 ];
 
 /// How long a backup may keep the database from what only one can do.

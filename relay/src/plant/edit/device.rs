@@ -13,7 +13,7 @@ use crate::runner::lock;
 use crate::store::Fresh;
 
 /// Devices of a relay. Our own limit.
-const MAX_DEVICES: usize = 256;
+pub(crate) const MAX_DEVICES: usize = 256;
 
 impl Plant {
     /// A new device without groups.

@@ -11,7 +11,7 @@ use crate::plant::Plant;
 use crate::runner::lock;
 
 /// Groups of a device. Our own limit.
-const MAX_GROUPS: usize = 64;
+pub(crate) const MAX_GROUPS: usize = 64;
 
 impl Plant {
     /// A new group.

@@ -2,6 +2,7 @@
 
 mod device;
 mod group;
+mod project;
 mod variable;
 
 use std::fmt::Display;
@@ -11,6 +12,8 @@ use cipdeck_shared::config::{DeviceId, GroupId};
 use cipdeck_shared::plan::plant::{self, PlantFinding};
 use cipdeck_shared::tag::Types;
 
+pub(crate) use self::device::MAX_DEVICES;
+pub(crate) use self::group::MAX_GROUPS;
 use super::Inner;
 use super::entries::Entries;
 use crate::actor::Actor;

@@ -100,7 +100,7 @@ impl Plant {
                 let device = entries.group(variable.group)?.config.device;
                 (variable, device, entries.with_parts(id))
             };
-            inner.store.remove_variables(ids.clone()).await?;
+            inner.store.remove_variables(variable.group, ids.clone()).await?;
             lock(&inner.entries).remove_variables(&ids);
             inner.note(&of_variable(&actor, "deleted", &variable).with("parts", ids.len() - 1));
             inner.told(device, Some(variable.group));

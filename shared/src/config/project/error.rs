@@ -79,6 +79,15 @@ pub enum ProjectErrorKind {
     /// A member that is not kept.
     #[error("the member `{0}` is given by the relay: it is not kept in a project")]
     Given(&'static str),
+    /// A link: what it leads to is not a part of the project.
+    #[error("this is a link, and a project has none: put the file itself here")]
+    Link,
+    /// Not UTF-8.
+    #[error("this is not UTF-8")]
+    Encoding,
+    /// The system says no.
+    #[error("this cannot be read: {0}")]
+    Unreadable(String),
     /// Too many files.
     #[error("a project has at most {MAX_PROJECT_FILES} files")]
     TooManyFiles,

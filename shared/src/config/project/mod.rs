@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub use self::document::{Position, locate};
 pub use self::error::{ProjectError, ProjectErrorKind};
 pub use self::name::{file_name, free_file_name, is_portable};
-pub use self::read::{Read, block, read};
+pub use self::read::{Read, block, group, read, target};
 pub use self::variables::{addresses, parents};
 pub use self::write::{
     block_path, files, group_path, target_path, write_block, write_group, write_head, write_target,

@@ -66,6 +66,21 @@ pub fn block(file: &str, text: &str) -> Result<BlockConfig, Vec<ProjectError>> {
     block.ok_or(reader.read.errors)
 }
 
+/// Reads a device's file, without its groups.
+pub fn target(file: &str, text: &str) -> Result<ProjectTarget, Vec<ProjectError>> {
+    let mut reader = Reader::default();
+    reader.target(file, String::new(), text);
+    reader.read.project.targets.into_values().next().ok_or(reader.read.errors)
+}
+
+/// Reads a group's file.
+pub fn group(file: &str, text: &str) -> Result<ProjectGroup, Vec<ProjectError>> {
+    let mut reader = Reader::default();
+    reader.group(file, "", String::new(), text);
+    let group = reader.groups.pop().map(|(.., group)| group);
+    if reader.read.errors.is_empty() { group.ok_or_else(Vec::new) } else { Err(reader.read.errors) }
+}
+
 /// Members that the relay gives to a block.
 const GIVEN: [&str; 2] = ["id", "revision"];
 

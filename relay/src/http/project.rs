@@ -1,0 +1,67 @@
+//! `/api/v1/project`: blocks, devices and groups as one file.
+
+use axum::Json as Answer;
+use axum::extract::{Query, State};
+use axum::http::{Uri, header};
+use axum::response::IntoResponse;
+use cipdeck_shared::api::ProjectImport;
+
+use super::caller::Caller;
+use super::extract::Archive;
+use crate::app::App;
+use crate::error::ApiError;
+use crate::project;
+
+/// The one address whose body is no JSON.
+pub(super) const ROUTE: &str = "/api/v1/project";
+
+/// All blocks, devices, groups and variables as a zip archive of small files; docs/PROJECTS.md describes them.
+#[utoipa::path(
+    get,
+    path = "/project",
+    tag = "project",
+    responses((status = 200, description = "The archive", body = [u8], content_type = "application/zip"))
+)]
+pub(super) async fn export(State(app): State<App>) -> Result<impl IntoResponse, ApiError> {
+    let files = app.store.files().await?;
+    let packed = tokio::task::spawn_blocking(move || project::pack(&files)).await;
+    let packed = packed.map_err(|error| ApiError::Internal(error.to_string()))?;
+    let packed = packed.map_err(|error| ApiError::Internal(error.to_string()))?;
+    let headers = [
+        (header::CONTENT_TYPE, "application/zip"),
+        (header::CONTENT_DISPOSITION, "attachment; filename=\"cipdeck-project.zip\""),
+    ];
+    Ok((headers, packed))
+}
+
+/// Takes in such an archive: what has the same name is replaced, what is new is created, everything else stays. All of
+/// it is stored, or nothing.
+#[utoipa::path(
+    post,
+    path = "/project",
+    tag = "project",
+    params(("preview" = Option<bool>, Query, description = "Tells what would be done, and what is wrong, and stores nothing")),
+    request_body(content = [u8], content_type = "application/zip", description = "At most 8 MB"),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings"]))),
+    responses((status = 200, description = "What was done, or would be", body = ProjectImport))
+)]
+pub(super) async fn import(
+    State(app): State<App>,
+    Caller(actor): Caller,
+    uri: Uri,
+    Archive(archive): Archive,
+) -> Result<Answer<ProjectImport>, ApiError> {
+    project::import(&app, &actor, archive, is_preview(&uri)?).await.map(Answer)
+}
+
+/// `?preview=true`. Anything else could be meant as that, and would store something.
+fn is_preview(uri: &Uri) -> Result<bool, ApiError> {
+    let unreadable =
+        || ApiError::Unreadable("there is one parameter here: preview=true or preview=false".to_owned());
+    let Query(pairs) = Query::<Vec<(String, String)>>::try_from_uri(uri).map_err(|_| unreadable())?;
+    match pairs.as_slice() {
+        [] => Ok(false),
+        [(name, value)] if name == "preview" => value.parse().map_err(|_| unreadable()),
+        _ => Err(unreadable()),
+    }
+}

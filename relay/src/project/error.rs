@@ -1,0 +1,41 @@
+//! Why the files of a project could not be written, or not be read.
+
+use cipdeck_shared::config::project::ProjectError;
+
+/// What is wrong with the folder of a project.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FilesError {
+    /// Somebody else was there.
+    #[error(
+        "{file} {how} since the relay has read it, and nothing was stored. To go on with the folder as it is, start the \
+         relay again; otherwise put the file back (git checkout -- {file}) and try again"
+    )]
+    Conflict {
+        /// Which file.
+        file: String,
+        /// What has happened to it.
+        how: &'static str,
+    },
+    /// The system says no.
+    #[error("{file} in the project's folder cannot be written, and nothing was stored: {source}")]
+    Write {
+        /// Which file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Files that cannot be read, all of them.
+    #[error("the project cannot be read:\n{}", lines(.0))]
+    Wrong(Vec<ProjectError>),
+    /// The database knows a project, and the folder is none.
+    #[error(
+        "there is no cipdeck.json in this folder, and the data folder belongs to a project: is it the right folder? To make \
+         a new project, give another data folder with --data, or export the old one and import it there"
+    )]
+    NotTheProject,
+}
+
+fn lines(errors: &[ProjectError]) -> String {
+    let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
+    lines.join("\n")
+}

@@ -1,0 +1,28 @@
+//! A project: a folder of small files that people keep in version control, beside the database or instead of it.
+//!
+//! At the start the folder is the truth. From then on every change is written into its file before anybody is told that
+//! it was stored; a file that somebody else has changed meanwhile is never overwritten.
+
+mod archive;
+mod check;
+mod error;
+mod folder;
+mod import;
+mod merge;
+mod mirror;
+mod snapshot;
+mod variables;
+mod walk;
+mod wanted;
+
+pub(crate) use self::archive::{ArchiveError, MAX_ARCHIVE, pack, unpack};
+pub(crate) use self::check::findings;
+pub(crate) use self::error::FilesError;
+pub(crate) use self::folder::Folder;
+pub(crate) use self::import::import;
+pub(crate) use self::merge::{How, Outcome, merge};
+pub(crate) use self::mirror::{Mirror, Touched};
+pub(crate) use self::snapshot::{group_of, project_of, target_of};
+
+#[cfg(test)]
+mod tests;
