@@ -41,7 +41,7 @@ pub(super) async fn export(State(app): State<App>) -> Result<impl IntoResponse, 
     path = "/project",
     tag = "project",
     params(("preview" = Option<bool>, Query, description = "Tells what would be done, and what is wrong, and stores nothing")),
-    request_body(content = [u8], content_type = "application/zip", description = "At most 8 MB"),
+    request_body(content = [u8], content_type = "application/zip", description = "At most 16 MB"),
     extensions(("x-cipdeck-problems" = json!(["conflict", "findings"]))),
     responses((status = 200, description = "What was done, or would be", body = ProjectImport))
 )]

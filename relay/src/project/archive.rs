@@ -10,7 +10,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 use super::walk::{is_json, text};
 
 /// Bytes of an archive that is sent to us. Our own limit: packed, a project is a tenth of its size.
-pub(crate) const MAX_ARCHIVE: usize = 8 * 1024 * 1024;
+pub(crate) const MAX_ARCHIVE: usize = 16 * 1024 * 1024;
 
 /// Why an archive is not taken.
 #[derive(Debug, thiserror::Error)]

@@ -126,6 +126,7 @@ impl Found<'_> {
             max: None,
             error_id: None,
             sub_error_id: None,
+            communication_report: None,
         });
     }
 }

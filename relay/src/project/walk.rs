@@ -44,8 +44,7 @@ impl<'a> Walk<'a> {
         // Without a version loose blocks are the project; with one they are somebody else's.
         if self.known.contains_key(PROJECT_HEAD) {
             self.known.retain(|path, _| path == PROJECT_HEAD || path.contains('/'));
-            let is_loose =
-                |path: &str| path != PROJECT_HEAD && path.ends_with(".json") && !path.contains('/');
+            let is_loose = |path: &str| path != PROJECT_HEAD && is_json(path) && !path.contains('/');
             self.errors.retain(|error| !is_loose(&error.file));
         }
     }
