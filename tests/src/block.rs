@@ -58,6 +58,31 @@ pub fn set(path: &str, class: u32, instance: u32, attribute: u32, data: &str) ->
     block
 }
 
+/// A SEND_REQ for a TSX ETC 100: the address names the device, `192.168.1.102` or with a TCP port.
+pub fn send_req(device: &str, words: &str) -> Value {
+    words_block("SEND_REQ", &format!("ADDR('0.2.0.{device}')"), words)
+}
+
+/// A SEND_REQ for a TSX ETC 101: the device is in words 1 and 2.
+pub fn send_req_etc101(words: &str) -> Value {
+    with(words_block("SEND_REQ", "ADDR('0.4.0')", words), "/Dialect", "ETC101")
+}
+
+/// A DATA_EXCH, `UNC` or `CON`.
+pub fn data_exch(device: &str, mode: &str, words: &str) -> Value {
+    words_block("DATA_EXCH", &format!("ADDMX('0.2.0{{{device}}}{mode}.CIP')"), words)
+}
+
+fn words_block(kind: &str, address: &str, words: &str) -> Value {
+    json!({
+        "name": format!("words of {kind}"),
+        "kind": kind,
+        "Address": address,
+        "Data_to_Send": words,
+        "Management_Param": [0, 0, 30, 2 * words.split(' ').count()],
+    })
+}
+
 /// The block with another member, named by a JSON pointer such as `/TargetCfg/UcmmTimeout`.
 #[must_use]
 pub fn with(mut block: Value, pointer: &str, value: impl Into<Value>) -> Value {

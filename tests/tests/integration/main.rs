@@ -31,6 +31,7 @@ mod scale;
 mod scripts;
 mod secrets;
 mod security_model;
+mod send_req;
 mod shutdown;
 mod slow_viewer;
 mod tag_clients;
