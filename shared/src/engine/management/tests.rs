@@ -1,4 +1,5 @@
 use alloc::boxed::Box;
+use alloc::string::String;
 use alloc::vec;
 
 use super::*;
@@ -88,5 +89,26 @@ fn every_cause_has_a_report_that_the_tables_explain_and_none_looks_like_success(
         }
         let open = Cause { by: Some(RefusedBy::ForwardOpen), ..Cause::new(CauseKind::RefusedByDevice) };
         assert_eq!(reports::of(form, Some(&open)).0, MESSAGE_REFUSED, "its message has never been sent");
+    }
+}
+
+#[test]
+fn the_document_has_the_table_of_reports() {
+    let document = include_str!("../../../../docs/SEND_REQ.md");
+    for row in REPORTS {
+        let what = String::from(row.cause.clone());
+        let by = if row.by.is_some() { " by `forward_open`" } else { "" };
+        let line = document.lines().find(|line| {
+            line.strip_prefix("| `").and_then(|line| line.strip_prefix(&what)).is_some_and(|rest| {
+                let rest = rest.strip_prefix('`').and_then(|rest| rest.strip_prefix(by));
+                rest.is_some_and(|rest| rest.starts_with([':', ' ']) && !rest.starts_with(" by"))
+            })
+        });
+        let line = line.unwrap_or_else(|| panic!("{what}{by} is not in docs/SEND_REQ.md"));
+        let shown =
+            |(communication, operation): (u8, u8)| alloc::format!("{communication:02X} / {operation:02X}");
+        let known = if row.is_confirmed { "confirmed" } else { "inferred" };
+        let columns = alloc::format!(" | {} | {} | {known} |", shown(row.etc100), shown(row.exchange));
+        assert!(line.ends_with(&columns), "{line} has to end with{columns}");
     }
 }
