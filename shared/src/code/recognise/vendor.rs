@@ -9,8 +9,9 @@ use core::ops::Range;
 
 use super::line::is_instruction;
 use super::only;
+use crate::code::ccw_st;
 use crate::code::dialect::Dialect;
-use crate::code::text::{Argument, Call, Expression, Item, Reference, Script, Statement, Step};
+use crate::code::text::{Expression, Item, Script, Statement, roots};
 
 /// One piece for each vendor that has a call in the text.
 pub(super) fn split(text: &str) -> Vec<(Dialect, Cow<'_, str>)> {
@@ -97,15 +98,9 @@ fn vendor(statement: &Statement<'_>, types: &BTreeMap<String, String>) -> Option
         "cipucmmsend" | "cipsend" | "cipopen" | "cipopenwithdatasize" | "cipclose" => Some(Dialect::SysmacSt),
         _ if named(&["CtrlCfg", "AppCfg", "TargetCfg"]) => Some(Dialect::CcwSt),
         _ if named(&["RqPath", "RoutePath", "ServiceCode"]) => Some(Dialect::SysmacSt),
-        _ if is_positional_message(call) => Some(Dialect::CcwSt),
+        _ if ccw_st::is_positional(call) => Some(Dialect::CcwSt),
         _ => None,
     }
-}
-
-/// `fb(start, ctrl, app, target, req, length, res)` of an instance that nobody declares.
-fn is_positional_message(call: &Call<'_>) -> bool {
-    let plain = |it: &Argument<'_>| it.name.is_none();
-    call.arguments.len() >= 7 && call.arguments.iter().all(plain)
 }
 
 /// Each statement goes to the vendor whose call shares a variable with it, directly or through others; what shares none
@@ -167,71 +162,11 @@ fn owners(script: &Script<'_>, calls: &[Option<Dialect>]) -> Vec<Option<Dialect>
     script.items.iter().zip(calls).map(&mut owner).collect()
 }
 
-/// The variables of a statement. Those of a condition are not among them: a flag may start several messages.
+/// The variables of a statement. A function belongs to nobody, an instance to its message.
 fn names(item: &Item<'_>) -> Vec<String> {
-    let mut names = Vec::new();
-    match &item.statement {
-        Statement::Declaration(declaration) => {
-            names.extend(declaration.names.iter().map(|(name, _)| name.to_lowercase()));
-        }
-        Statement::Assignment { target, value } => {
-            add(target, &mut names);
-            references(value, &mut names);
-        }
-        Statement::Call(call) => arguments(call, &mut names),
-    }
+    let mut names = roots(item);
+    names.retain(|name| !matches!(name.as_str(), "send_req" | "data_exch"));
     names
-}
-
-fn add(reference: &Reference<'_>, names: &mut Vec<String>) {
-    names.push(reference.root.to_lowercase());
-    for step in &reference.steps {
-        if let Step::Index(indexes) = step {
-            for index in indexes {
-                references(index, names);
-            }
-        }
-    }
-}
-
-fn arguments(call: &Call<'_>, names: &mut Vec<String>) {
-    // A function belongs to nobody, an instance to its message.
-    let function = ["SEND_REQ", "DATA_EXCH"].iter().any(|name| call.is(name));
-    if !function {
-        add(&call.name, names);
-    }
-    for argument in &call.arguments {
-        if let Some(value) = &argument.value {
-            references(value, names);
-        }
-    }
-}
-
-fn references(expression: &Expression<'_>, names: &mut Vec<String>) {
-    match expression {
-        Expression::Literal(..) => {}
-        Expression::Reference(reference) => add(reference, names),
-        Expression::Call(call) => {
-            for argument in &call.arguments {
-                if let Some(value) = &argument.value {
-                    references(value, names);
-                }
-            }
-        }
-        Expression::List(values, _)
-        | Expression::Repeated(_, values, _)
-        | Expression::Chain(values, _, _) => {
-            for value in values {
-                references(value, names);
-            }
-        }
-        Expression::Structure(members, _) => {
-            for (_, value) in members {
-                references(value, names);
-            }
-        }
-        Expression::Unary(_, value, _) => references(value, names),
-    }
 }
 
 /// Names that belong together, and to whom.

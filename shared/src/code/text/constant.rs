@@ -95,7 +95,7 @@ impl Work<'_, '_, '_> {
         match (name.as_str(), values.as_slice()) {
             ("AND_MASK", [value, mask]) => Some(value & mask),
             ("OR_MASK", [value, mask]) => Some(value | mask),
-            ("SHR", [value, bits]) if *value >= 0 => value.checked_shr(u32::try_from(*bits).ok()?),
+            ("SHR", [value, bits]) => value.checked_shr(u32::try_from(*bits).ok()?),
             ("SHL", [value @ 0..=0xFFFF_FFFF, bits @ 0..=32]) => Some(value << bits),
             ("MOD", [value, by]) => value.checked_rem(*by),
             (name, [value]) => {

@@ -181,6 +181,23 @@ fn read_text(text: &str) -> Result<String, RemarkKind> {
     Ok(read)
 }
 
+/// A text in single quotes: nothing of it ends them.
+pub(in crate::code) fn quoted(text: &str) -> String {
+    let mut quoted = String::from("'");
+    for c in text.chars() {
+        match c {
+            '$' | '\'' => quoted.extend(['$', c]),
+            '\n' => quoted.push_str("$L"),
+            '\r' => quoted.push_str("$R"),
+            '\t' => quoted.push_str("$T"),
+            c if c.is_control() => quoted.push('?'),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('\'');
+    quoted
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,6 +230,13 @@ mod tests {
         assert_eq!(read_literal("'a$'b$$c$0D'"), Ok(Literal::Text("a'b$c\r".into())));
         assert_eq!(read_literal("‘0.2.0’"), Ok(Literal::Text("0.2.0".into())));
         assert_eq!(read_literal("-1.5"), Ok(Literal::Real(-1.5)));
+    }
+
+    #[test]
+    fn a_quoted_text_reads_back() {
+        for text in ["4,192.168.1.100", "it's $5", "two\nlines\r\t", "Größe"] {
+            assert_eq!(read_literal(&quoted(text)), Ok(Literal::Text(text.into())), "{text}");
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod constant;
 mod grammar;
 mod literal;
 mod memory;
+mod reading;
 mod script;
 mod syntax;
 mod token;
@@ -32,8 +33,9 @@ mod token;
 #[cfg(test)]
 mod tests;
 
-pub(super) use self::literal::{Literal, read_literal};
+pub(super) use self::literal::{Literal, quoted, read_literal};
 pub(super) use self::memory::{Cell, Memory};
+pub(super) use self::reading::{Reading, declared, left_over, lower_bound, roots};
 pub(super) use self::script::{Item, Script};
 pub(super) use self::syntax::{
     Argument, Call, Declaration, Declared, Expression, Reference, Statement, Step,

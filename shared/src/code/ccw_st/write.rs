@@ -1,0 +1,212 @@
+//! A block as variables and statements.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt::Write;
+
+use super::fields::{Fields, Way};
+use crate::code::Code;
+use crate::code::change::{Change, Grade, Why};
+use crate::code::header::harmless;
+use crate::code::message::{Message, Tells, spaced};
+use crate::code::name::identifier;
+use crate::code::text::quoted;
+use crate::config::{BlockConfig, CONTROLLER_HOPS, Endpoint, Host};
+
+const TELLS: Tells = Tells { trigger: true, res_data_size: true };
+
+/// What the configuration structures tell, too.
+const TOLD: [&str; 4] =
+    ["CtrlCfg.Cancel", "CtrlCfg.StrMode", "TargetCfg.ConnMsgTimeout", "TargetCfg.ConnClose"];
+
+/// A block as Structured Text.
+pub(in crate::code) fn export(block: &BlockConfig) -> Code {
+    let message = match Message::of(block) {
+        Ok(message) => message,
+        Err(code) => return code,
+    };
+    let name = identifier(&message.config.name);
+    let request = Fields::of(&message.config.req_layout, Some(message.data()), &name);
+    let reply = Fields::of(&message.config.res_layout, None, &name);
+    let changes = changes(&message, &name, &request, &reply);
+    let mut text = String::new();
+    let section = Section { message: &message, name: &name, request: &request, reply: &reply };
+    section.write(&mut text);
+    Code { text, changes }
+}
+
+fn changes(message: &Message<'_>, name: &str, request: &Fields, reply: &Fields) -> Vec<Change> {
+    let mut changes = message.untold(TELLS);
+    changes.retain(|change| !TOLD.contains(&change.member.as_str()));
+    for change in &mut changes {
+        let packed = match change.member.as_str() {
+            "ReqLayout" => !request.is_empty(),
+            "ResLayout" => !reply.is_empty(),
+            _ => false,
+        };
+        if packed {
+            (change.grade, change.why) = (Grade::Carried, Why::ProgramDoes);
+        }
+    }
+    if name != message.config.name {
+        changes.push(Change::new(&"name", &message.config.name, &name, Grade::Carried, Why::NameCharacters));
+    }
+    let path = &message.config.target_cfg.path;
+    let mut other = |is_other: bool, grade: Grade, why: Why| {
+        if is_other {
+            changes.push(Change::new(&"TargetCfg.Path", path, path, grade, why));
+        }
+    };
+    let endpoint = message.endpoint();
+    other(endpoint.is_none(), Grade::Carried, Why::NoBuiltIn);
+    other(endpoint.is_some_and(Endpoint::has_unusual_port), Grade::Request, Why::NoTcpPort);
+    other(endpoint.is_some_and(|it| matches!(it.host, Host::Name(_))), Grade::Request, Why::NoHostName);
+    other(message.path.hops() > CONTROLLER_HOPS, Grade::Request, Why::NoRoute);
+    changes
+}
+
+struct Section<'m> {
+    message: &'m Message<'m>,
+    name: &'m str,
+    request: &'m Fields,
+    reply: &'m Fields,
+}
+
+impl Section<'_> {
+    fn write(&self, out: &mut String) {
+        self.about(out);
+        self.declarations(out);
+        self.settings(out);
+        self.data(out);
+        self.call(out);
+        self.results(out);
+    }
+
+    fn about(&self, out: &mut String) {
+        let app = &self.message.config.app_cfg;
+        let words = harmless(&format!(
+            "{}: service {}, class {}, instance {}, attribute {}",
+            self.message.config.name,
+            self.message.service_words(),
+            self.message.class_words(),
+            app.instance,
+            app.attribute,
+        ));
+        line(out, &format!("(* {words} *)"));
+        line(out, &format!("(* request {} *)", spaced(self.message.plan.bytes())));
+        line(
+            out,
+            "(* The variables are entered in the table of local variables; the program begins after END_VAR. *)",
+        );
+    }
+
+    fn declarations(&self, out: &mut String) {
+        let name = self.name;
+        // The manual asks for an array that is larger than ReqLength.
+        let request = self.message.data().len() + 1;
+        let reply = self.message.config.res_data_size;
+        line(out, "VAR");
+        for (variable, kind) in [
+            (name.to_string(), "MSG_CIPGENERIC".to_string()),
+            (format!("{name}_IN"), "BOOL".to_string()),
+            (format!("{name}_Ctrl"), "CIPCONTROLCFG".to_string()),
+            (format!("{name}_App"), "CIPAPPCFG".to_string()),
+            (format!("{name}_Target"), "CIPTARGETCFG".to_string()),
+            (format!("{name}_Req"), format!("ARRAY[1..{request}] OF USINT")),
+            (format!("{name}_Res"), format!("ARRAY[1..{reply}] OF USINT")),
+            (format!("{name}_Q"), "BOOL".to_string()),
+            (format!("{name}_Status"), "CIPSTATUS".to_string()),
+            (format!("{name}_ResLen"), "UINT".to_string()),
+        ] {
+            line(out, &format!("    {variable} : {kind};"));
+        }
+        self.request.declare(out);
+        self.reply.declare(out);
+        line(out, "END_VAR");
+        out.push('\n');
+    }
+
+    fn settings(&self, out: &mut String) {
+        let config = self.message.config;
+        let (ctrl, app, target) = (&config.ctrl_cfg, &config.app_cfg, &config.target_cfg);
+        let mut set = |group: &str, member: &str, value: &str, about: &str| {
+            let comment =
+                if about.is_empty() { String::new() } else { format!(" (* {} *)", harmless(about)) };
+            line(out, &format!("{}_{group}.{member} := {value};{comment}", self.name));
+        };
+        set("Ctrl", "Cancel", truth(ctrl.cancel), "");
+        let period =
+            if ctrl.trigger_type == 0 { "once per rising edge of IN" } else { "ms, while IN is TRUE" };
+        set("Ctrl", "TriggerType", &ctrl.trigger_type.to_string(), period);
+        set("Ctrl", "StrMode", &ctrl.str_mode.to_string(), "");
+        let service = self.message.service_words();
+        set("App", "Service", &app.service.to_string(), &format!("16#{:02X}, {service}", app.service));
+        let class = self.message.class_words();
+        set("App", "Class", &app.class.to_string(), &format!("16#{:02X}, {class}", app.class));
+        set("App", "Instance", &app.instance.to_string(), &format!("16#{:02X}", app.instance));
+        let none = if app.attribute == 0 { ", none" } else { "" };
+        set("App", "Attribute", &app.attribute.to_string(), &format!("16#{:02X}{none}", app.attribute));
+        set("App", "MemberCnt", &app.member_cnt.to_string(), "");
+        for (at, member) in self.message.members().iter().enumerate() {
+            set("App", &format!("MemberId[{at}]"), &member.to_string(), &format!("16#{member:02X}"));
+        }
+        set("Target", "Path", &quoted(&target.path), "");
+        let mode = if target.cip_conn_mode == 0 { "unconnected" } else { "class 3 connection" };
+        set("Target", "CipConnMode", &target.cip_conn_mode.to_string(), mode);
+        let ucmm = if target.ucmm_timeout == 0 { "ms; 0 = 3000" } else { "ms" };
+        set("Target", "UcmmTimeout", &target.ucmm_timeout.to_string(), ucmm);
+        let connected = if target.conn_msg_timeout == 0 { "ms; 0 = 10000" } else { "ms" };
+        set("Target", "ConnMsgTimeout", &target.conn_msg_timeout.to_string(), connected);
+        set("Target", "ConnClose", truth(target.conn_close), "");
+        out.push('\n');
+    }
+
+    /// Typed variables where the layout has them, bytes elsewhere. `COP` copies over bytes that are the same.
+    fn data(&self, out: &mut String) {
+        let data = self.message.data();
+        if data.is_empty() {
+            return;
+        }
+        let array = format!("{}_Req", self.name);
+        for (at, byte) in data.iter().enumerate() {
+            if self.request.way(at) != Some(Way::Arithmetic) {
+                line(out, &format!("{array}[{}] := {byte}; (* 16#{byte:02X} *)", at + 1));
+            }
+        }
+        self.request.pack(&array, out);
+        out.push('\n');
+    }
+
+    fn call(&self, out: &mut String) {
+        let name = self.name;
+        let length = self.message.data().len();
+        line(
+            out,
+            &format!(
+                "{name}({name}_IN, {name}_Ctrl, {name}_App, {name}_Target, {name}_Req, {length}, {name}_Res);"
+            ),
+        );
+    }
+
+    fn results(&self, out: &mut String) {
+        let name = self.name;
+        line(out, &format!("{name}_Q := {name}.Q;"));
+        line(out, &format!("{name}_Status := {name}.Status;"));
+        line(out, &format!("{name}_ResLen := {name}.ResLength;"));
+        if !self.reply.is_empty() {
+            line(out, &format!("IF {name}_Q THEN"));
+            self.reply.unpack(&format!("{name}_Res"), out);
+            line(out, "END_IF;");
+        }
+    }
+}
+
+fn truth(value: bool) -> &'static str {
+    if value { "TRUE" } else { "FALSE" }
+}
+
+pub(super) fn line(out: &mut String, text: &str) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{text}");
+}

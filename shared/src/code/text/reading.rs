@@ -1,0 +1,318 @@
+//! The values of one message's variables, with a remark for each that is not as it should be.
+
+use alloc::collections::BTreeSet;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::memory::{Cell, Memory};
+use super::script::{Item, Script};
+use super::syntax::{Argument, Call, Expression, Reference, Statement, Step};
+use super::token::Place;
+use crate::code::remark::{Remark, RemarkKind};
+use crate::plan::Severity;
+
+/// The values at one call.
+pub(in crate::code) struct Reading<'r, 's, 'a> {
+    script: &'s Script<'a>,
+    memory: &'r Memory<'s, 'a>,
+    lines: Range<usize>,
+    place: Place,
+    excerpt: &'a str,
+    /// What is to be said so far.
+    pub(in crate::code) remarks: Vec<Remark>,
+}
+
+impl<'r, 's, 'a> Reading<'r, 's, 'a> {
+    /// At the call that is this item.
+    pub(in crate::code) fn new(script: &'s Script<'a>, memory: &'r Memory<'s, 'a>, item: &Item<'a>) -> Self {
+        Self {
+            script,
+            memory,
+            lines: item.place.line..item.last_line + 1,
+            place: item.place,
+            excerpt: script.source(item),
+            remarks: Vec::new(),
+        }
+    }
+
+    /// From the first line that was used to the last one of the call.
+    pub(in crate::code) fn lines(&self) -> Range<usize> {
+        self.lines.clone()
+    }
+
+    /// Something about the call as a whole.
+    pub(in crate::code) fn say(&mut self, severity: Severity, what: RemarkKind) {
+        let (line, column) = (self.place.line, self.place.column);
+        self.remarks.push(Remark { severity, ..Remark::error(line, column, self.excerpt, what) });
+    }
+
+    fn at(&mut self, severity: Severity, cell: &Cell<'s, 'a>, what: RemarkKind) {
+        let place = cell.value.place();
+        let excerpt = self.script.items.get(cell.item).map_or("", |item| self.script.source(item));
+        self.remarks.push(Remark { severity, ..Remark::error(place.line, place.column, excerpt, what) });
+    }
+
+    /// The value of a variable, and that it was used.
+    fn cell(&mut self, key: &str, member: &str) -> Option<Cell<'s, 'a>> {
+        let cell = *self.memory.cell(key)?;
+        if let Some(item) = self.script.items.get(cell.item) {
+            self.lines.start = self.lines.start.min(item.place.line);
+        }
+        if cell.again {
+            self.at(Severity::Warning, &cell, RemarkKind::Twice(member.into()));
+        }
+        Some(cell)
+    }
+
+    /// A whole number; `None`: nobody sets it, or it depends on the program, which is told.
+    pub(in crate::code) fn integer(&mut self, key: &str, member: &str, low: i64, high: i64) -> Option<i64> {
+        let cell = self.cell(key, member)?;
+        let Some(value) = cell.value.integer_in(self.memory) else {
+            self.at(Severity::Error, &cell, RemarkKind::NotConstant(member.into()));
+            return None;
+        };
+        let value = i64::try_from(value).ok();
+        if value.is_none_or(|value| !(low..=high).contains(&value)) {
+            let severity = if value.is_some() { Severity::Warning } else { Severity::Error };
+            self.at(severity, &cell, RemarkKind::OutOfRange { member: member.into(), low, high });
+        }
+        value
+    }
+
+    /// TRUE or FALSE.
+    pub(in crate::code) fn truth(&mut self, key: &str, member: &str) -> Option<bool> {
+        let cell = self.cell(key, member)?;
+        let value = cell.value.truth_in(self.memory);
+        if value.is_none() {
+            self.at(Severity::Error, &cell, RemarkKind::NotConstant(member.into()));
+        }
+        value
+    }
+
+    /// A text; a variable that holds one will do.
+    pub(in crate::code) fn text(&mut self, key: &str, member: &str) -> Option<&'s str> {
+        let cell = self.cell(key, member)?;
+        let mut value = cell.value;
+        for _ in 0..8 {
+            if let Some(text) = value.text() {
+                return Some(text);
+            }
+            let next = value.reference().and_then(Reference::key);
+            match next.and_then(|key| self.memory.value(&key)) {
+                Some(next) => value = next,
+                None => break,
+            }
+        }
+        self.at(Severity::Error, &cell, RemarkKind::NotConstant(member.into()));
+        None
+    }
+
+    /// An argument of the call, or the member of the instance that stands for it: `fb(Timeout := 5)`,
+    /// `fb.Timeout := 5`. The key under which it is found.
+    pub(in crate::code) fn key(call: &Call<'a>, position: usize, name: &str) -> Option<String> {
+        match call.argument(position, name).and_then(|argument| argument.value.as_ref()) {
+            Some(Expression::Reference(reference)) => reference.key(),
+            Some(_) => None,
+            None => Some(alloc::format!("{}.{}", call.name.key()?, name.to_lowercase())),
+        }
+    }
+
+    /// A whole number that is given to the call, itself or as a variable.
+    pub(in crate::code) fn integer_of(
+        &mut self,
+        call: &'s Call<'a>,
+        position: usize,
+        name: &str,
+        low: i64,
+        high: i64,
+    ) -> Option<i64> {
+        let Some(key) = Self::key(call, position, name) else {
+            let value = call.argument(position, name)?.value.as_ref()?;
+            let given = Cell { value, item: usize::MAX, assigned: true, again: false };
+            let number = value.integer_in(self.memory).and_then(|value| i64::try_from(value).ok());
+            match number {
+                None => self.at(Severity::Error, &given, RemarkKind::NotConstant(name.into())),
+                Some(number) if !(low..=high).contains(&number) => {
+                    self.at(
+                        Severity::Warning,
+                        &given,
+                        RemarkKind::OutOfRange { member: name.into(), low, high },
+                    );
+                }
+                Some(_) => {}
+            }
+            return number;
+        };
+        if self.memory.cell(&key).is_none() && call.argument(position, name).is_some() {
+            self.say(Severity::Error, RemarkKind::NotConstant(name.into()));
+        }
+        self.integer(&key, name, low, high)
+    }
+
+    /// Members that are set and that nobody knows.
+    pub(in crate::code) fn unknown(&mut self, key: &str, known: &[&str]) {
+        let memory = self.memory;
+        for (rest, cell) in memory.below(key) {
+            let name = rest.trim_start_matches('.').split(['.', '[']).next().unwrap_or_default();
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+                self.at(Severity::Error, cell, RemarkKind::UnknownMember(name.into()));
+            }
+        }
+    }
+
+    /// So many bytes of an array from its first element, which is `low` or else the lowest one that is set, 0 or 1.
+    /// Without a length all that are set.
+    pub(in crate::code) fn bytes(
+        &mut self,
+        key: &str,
+        member: &str,
+        low: Option<i128>,
+        length: Option<usize>,
+    ) -> Vec<u8> {
+        let memory = self.memory;
+        let below = memory.below(key);
+        let index = |rest: &str| rest.strip_prefix('[')?.strip_suffix(']')?.parse::<i128>().ok();
+        let set: Vec<i128> = below.keys().filter_map(|rest| index(rest)).collect();
+        let low = low.unwrap_or_else(|| set.iter().copied().min().unwrap_or(0).clamp(0, 1));
+        let last = set.iter().copied().max();
+        let all = last.map_or(0, |last| usize::try_from(last - low + 1).unwrap_or(0));
+        let length = length.unwrap_or(all).min(MAX_BYTES);
+        let mut bytes = Vec::with_capacity(length);
+        let mut missing = Vec::new();
+        for at in (low..).take(length) {
+            let element = alloc::format!("{member}[{at}]");
+            let path = alloc::format!("{key}[{at}]");
+            if self.memory.cell(&path).is_none() {
+                missing.push(at);
+            }
+            let value = self.integer(&path, &element, 0, 255);
+            let byte = value.map(|value| u8::try_from(value & 0xFF).unwrap_or(0));
+            bytes.push(byte.unwrap_or(0));
+        }
+        if let (Some(first), Some(last)) = (missing.first(), missing.last()) {
+            let words = alloc::format!(
+                "{member}: {} elements from [{first}] to [{last}] are not set: they are 0",
+                missing.len()
+            );
+            self.say(Severity::Warning, RemarkKind::Told(words));
+        }
+        if length == MAX_BYTES {
+            self.say(Severity::Error, RemarkKind::TooDeep);
+        }
+        bytes
+    }
+}
+
+/// More than any message has.
+const MAX_BYTES: usize = 4096;
+
+/// The lower bound that an array is declared with.
+pub(in crate::code) fn lower_bound(script: &Script<'_>, key: &str) -> Option<i128> {
+    declared(script, key)?.bounds.first().map(|(low, _)| *low)
+}
+
+/// The declared type of a variable.
+pub(in crate::code) fn declared<'s, 'a>(
+    script: &'s Script<'a>,
+    key: &str,
+) -> Option<&'s super::syntax::Declared<'a>> {
+    script.items.iter().find_map(|item| match &item.statement {
+        Statement::Declaration(declaration) => {
+            let is = |(name, _): &(&str, Place)| name.to_lowercase() == key;
+            declaration.names.iter().any(is).then_some(&declaration.kind)
+        }
+        _ => None,
+    })
+}
+
+/// What belongs to no message: one remark for each run of such statements. A statement belongs to a message if it
+/// has one of its variables in it, or one that such an assignment has.
+pub(in crate::code) fn left_over(
+    script: &Script<'_>,
+    mut names: BTreeSet<String>,
+    severity: Severity,
+) -> Vec<Remark> {
+    let roots: Vec<Vec<String>> = script.items.iter().map(roots).collect();
+    let is_used = |names: &BTreeSet<String>, of: &[String]| of.iter().any(|name| names.contains(name));
+    for _ in 0..2 {
+        for (item, of) in script.items.iter().zip(&roots) {
+            if matches!(item.statement, Statement::Assignment { .. }) && is_used(&names, of) {
+                names.extend(of.iter().cloned());
+            }
+        }
+    }
+    let mut remarks: Vec<Remark> = Vec::new();
+    let mut before = true;
+    for (item, of) in script.items.iter().zip(&roots) {
+        let used = is_used(&names, of);
+        if !used && before {
+            let what = RemarkKind::Told("statements that belong to no message begin here, left out".into());
+            let (line, column) = (item.place.line, item.place.column);
+            remarks.push(Remark { severity, ..Remark::error(line, column, script.source(item), what) });
+        }
+        before = used;
+    }
+    remarks
+}
+
+/// The variables of a statement, in lower case.
+pub(in crate::code) fn roots(item: &Item<'_>) -> Vec<String> {
+    let mut names = Vec::new();
+    match &item.statement {
+        Statement::Declaration(declaration) => {
+            names.extend(declaration.names.iter().map(|(name, _)| name.to_lowercase()));
+        }
+        Statement::Assignment { target, value } => {
+            of_reference(target, &mut names);
+            of_expression(value, &mut names);
+        }
+        Statement::Call(call) => {
+            of_reference(&call.name, &mut names);
+            of_arguments(&call.arguments, &mut names);
+        }
+    }
+    names
+}
+
+fn of_reference(reference: &Reference<'_>, names: &mut Vec<String>) {
+    names.push(reference.root.to_lowercase());
+    for step in &reference.steps {
+        if let Step::Index(indexes) = step {
+            of_expressions(indexes, names);
+        }
+    }
+}
+
+fn of_arguments(arguments: &[Argument<'_>], names: &mut Vec<String>) {
+    for argument in arguments {
+        if let Some(value) = &argument.value {
+            of_expression(value, names);
+        }
+    }
+}
+
+fn of_expressions(expressions: &[Expression<'_>], names: &mut Vec<String>) {
+    for expression in expressions {
+        of_expression(expression, names);
+    }
+}
+
+fn of_expression(expression: &Expression<'_>, names: &mut Vec<String>) {
+    match expression {
+        Expression::Literal(..) => {}
+        Expression::Reference(reference) => of_reference(reference, names),
+        Expression::Call(call) => of_arguments(&call.arguments, names),
+        Expression::List(values, _)
+        | Expression::Repeated(_, values, _)
+        | Expression::Chain(values, _, _) => {
+            of_expressions(values, names);
+        }
+        Expression::Structure(members, _) => {
+            for (_, value) in members {
+                of_expression(value, names);
+            }
+        }
+        Expression::Unary(_, value, _) => of_expression(value, names),
+    }
+}
