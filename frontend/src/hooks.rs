@@ -9,9 +9,9 @@ use yew::prelude::*;
 use crate::{
     browser,
     editor::Draft,
-    net::{Link, session},
+    net::{Link, Relay, session},
     notice::Notice,
-    store::{DeckId, Row},
+    store::{DeckId, Row, RowStore},
     workbench::Workbench,
 };
 
@@ -24,7 +24,13 @@ pub fn use_workbench() -> Workbench {
 /// One row; renders once in a frame in which it has changed.
 #[hook]
 pub fn use_row(id: DeckId) -> Option<Rc<Row>> {
-    let store = use_workbench().rows().clone();
+    let bench = use_workbench();
+    use_row_of(bench.rows(), id)
+}
+
+/// One row of this store.
+#[hook]
+pub fn use_row_of(store: &RowStore, id: DeckId) -> Option<Rc<Row>> {
     let update = use_force_update();
     use_effect_with((store.clone(), id), move |(store, id)| {
         let watch = store.watch(*id, Callback::from(move |()| update.force_update()));
@@ -61,12 +67,18 @@ pub fn use_draft(id: DeckId) -> Option<Rc<Draft>> {
 #[hook]
 pub fn use_link() -> Link {
     let bench = use_workbench();
+    use_link_of(bench.relay())
+}
+
+/// This connection.
+#[hook]
+pub fn use_link_of(relay: &Relay) -> Link {
     let update = use_force_update();
-    use_effect_with(bench.clone(), move |bench| {
-        let watch = bench.relay().watch(Callback::from(move |()| update.force_update()));
+    use_effect_with(relay.clone(), move |relay| {
+        let watch = relay.watch(Callback::from(move |()| update.force_update()));
         move || drop(watch)
     });
-    bench.relay().link()
+    relay.link()
 }
 
 /// Who is here, as the relay says; `None` before it has said anything.

@@ -50,7 +50,7 @@ pub(crate) const DOCUMENTS: [Document; 5] = [
         name: "words",
         binary: "cipdeck-words",
         index: "words.html",
-        styles: &["tokens", "base", "kit", "access", "document", "words"],
+        styles: &["tokens", "base", "kit", "access", "document", "pages", "words"],
     },
     Document {
         name: "code",
@@ -284,7 +284,7 @@ mod tests {
         assert!(sheet("page").ends_with(".access{}.pages{}"), "{}", sheet("page"));
         assert!(sheet("office").ends_with(".document{}.office{}"), "{}", sheet("office"));
         assert!(sheet("devices").ends_with(".office{}.devices{}"), "{}", sheet("devices"));
-        assert!(sheet("words").ends_with(".document{}.words{}"), "{}", sheet("words"));
+        assert!(sheet("words").ends_with(".pages{}.words{}"), "{}", sheet("words"));
         assert!(sheet("code").ends_with(".office{}.code{}"), "{}", sheet("code"));
     }
 

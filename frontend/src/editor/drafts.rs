@@ -12,28 +12,36 @@ use crate::store::{DeckId, Shelf, Watch, Watchers};
 /// Where drafts are kept as text, such as the browser's local storage.
 pub type Keep = Rc<dyn Fn(&str)>;
 
-/// A handle to the drafts. Clones are the same store.
-#[derive(Clone)]
-pub struct DraftStore(Rc<Inner>);
+/// What can be kept as a line of text.
+pub trait Keepable: Sized {
+    /// The line of a draft with this id.
+    fn write(&self, id: &str) -> Option<String>;
 
-struct Inner {
+    /// Id and draft of a line, if it is one.
+    fn read(line: &str) -> Option<(String, Self)>;
+}
+
+/// A handle to the drafts. Clones are the same store.
+pub struct DraftStore<D = Draft>(Rc<Inner<D>>);
+
+struct Inner<D> {
     keep: Keep,
-    drafts: RefCell<Shelf<DeckId, Rc<Draft>>>,
+    drafts: RefCell<Shelf<DeckId, Rc<D>>>,
     watchers: RefCell<Shelf<DeckId, Watchers>>,
     last_new: RefCell<u32>,
 }
 
-impl DraftStore {
+impl<D: Keepable> DraftStore<D> {
     /// The drafts that `kept` describes; what cannot be read is dropped.
     pub fn new(kept: Option<&str>, keep: Keep) -> Self {
-        let drafts = kept.map(read).unwrap_or_default();
+        let drafts = kept.map(read_all).unwrap_or_default();
         let last_new = drafts.keys().filter_map(|id| new_number(*id)).max().unwrap_or(0);
         let (drafts, watchers) = (RefCell::new(drafts), RefCell::default());
         Self(Rc::new(Inner { keep, drafts, watchers, last_new: RefCell::new(last_new) }))
     }
 
     /// The draft of an entry, if it has one.
-    pub fn draft(&self, id: DeckId) -> Option<Rc<Draft>> {
+    pub fn draft(&self, id: DeckId) -> Option<Rc<D>> {
         self.0.drafts.borrow().get(&id).cloned()
     }
 
@@ -50,7 +58,7 @@ impl DraftStore {
     }
 
     /// Keeps a draft.
-    pub fn put(&self, id: DeckId, draft: Draft) {
+    pub fn put(&self, id: DeckId, draft: D) {
         self.0.drafts.borrow_mut().insert(id, Rc::new(draft));
         self.changed(id);
     }
@@ -68,7 +76,7 @@ impl DraftStore {
     }
 
     fn changed(&self, id: DeckId) {
-        (self.0.keep)(&write(&self.0.drafts.borrow()));
+        (self.0.keep)(&write_all(&self.0.drafts.borrow()));
         let watchers = self.0.watchers.borrow().get(&id).cloned();
         if let Some(watchers) = watchers {
             watchers.wake();
@@ -76,13 +84,19 @@ impl DraftStore {
     }
 }
 
-impl PartialEq for DraftStore {
+impl<D> Clone for DraftStore<D> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<D> PartialEq for DraftStore<D> {
     fn eq(&self, other: &Self) -> bool {
         Rc::ptr_eq(&self.0, &other.0)
     }
 }
 
-impl fmt::Debug for DraftStore {
+impl<D> fmt::Debug for DraftStore<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "DraftStore({} drafts)", self.0.drafts.borrow().len())
     }
@@ -97,23 +111,34 @@ struct Kept {
     typed: Vec<(String, String)>,
 }
 
-fn write(drafts: &Shelf<DeckId, Rc<Draft>>) -> String {
-    let keep = |(id, draft): (&DeckId, &Rc<Draft>)| Kept {
-        id: id.to_string(),
-        revision: draft.revision,
-        config: draft.config.clone(),
-        typed: draft.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect(),
-    };
-    let lines = drafts.iter().filter_map(|draft| serde_json::to_string(&keep(draft)).ok());
+impl Keepable for Draft {
+    fn write(&self, id: &str) -> Option<String> {
+        let kept = Kept {
+            id: id.to_owned(),
+            revision: self.revision,
+            config: self.config.clone(),
+            typed: self.typed().iter().map(|(field, text)| (field.to_string(), text.clone())).collect(),
+        };
+        serde_json::to_string(&kept).ok()
+    }
+
+    fn read(line: &str) -> Option<(String, Self)> {
+        let kept: Kept = serde_json::from_str(line).ok()?;
+        Some((kept.id, Self::restored(kept.config, kept.revision, typed(&kept.typed))))
+    }
+}
+
+fn write_all<D: Keepable>(drafts: &Shelf<DeckId, Rc<D>>) -> String {
+    let lines = drafts.iter().filter_map(|(id, draft)| draft.write(&id.to_string()));
     lines.collect::<Vec<_>>().join("\n")
 }
 
-fn read(text: &str) -> Shelf<DeckId, Rc<Draft>> {
+fn read_all<D: Keepable>(text: &str) -> Shelf<DeckId, Rc<D>> {
     let mut drafts = Shelf::default();
-    for line in text.lines() {
-        let Ok(kept) = serde_json::from_str::<Kept>(line) else { continue };
-        let Ok(id) = kept.id.parse() else { continue };
-        drafts.insert(id, Rc::new(Draft::restored(kept.config, kept.revision, typed(&kept.typed))));
+    for (id, draft) in text.lines().filter_map(D::read) {
+        if let Ok(id) = id.parse() {
+            drafts.insert(id, Rc::new(draft));
+        }
     }
     drafts
 }
@@ -157,7 +182,7 @@ mod tests {
         store.put(stored, draft.clone());
         let new = store.next_new();
         store.put(new, Draft::new(MsgCipGeneric::product_name("0,0"), None));
-        let again = DraftStore::new(Some(&text.borrow()), Rc::new(|_| ()));
+        let again = DraftStore::<Draft>::new(Some(&text.borrow()), Rc::new(|_| ()));
         assert_eq!(*again.draft(stored).unwrap(), draft);
         assert_eq!(again.ids(), [stored, new]);
         assert_ne!(again.next_new(), new, "a new block gets a name of its own");
@@ -168,7 +193,7 @@ mod tests {
         let (store, text) = kept();
         store.put(DeckId::New(1), Draft::new(MsgCipGeneric::product_name("0,0"), None));
         let broken = format!("{{\"id\":\"new-2\",\"config\":1}}\n{}", text.borrow());
-        assert_eq!(DraftStore::new(Some(&broken), Rc::new(|_| ())).ids(), [DeckId::New(1)]);
-        assert!(DraftStore::new(Some("not json"), Rc::new(|_| ())).ids().is_empty());
+        assert_eq!(DraftStore::<Draft>::new(Some(&broken), Rc::new(|_| ())).ids(), [DeckId::New(1)]);
+        assert!(DraftStore::<Draft>::new(Some("not json"), Rc::new(|_| ())).ids().is_empty());
     }
 }

@@ -7,7 +7,7 @@ mod remark;
 
 pub use self::{
     draft::{Draft, Edit},
-    drafts::{DraftStore, Keep},
+    drafts::{DraftStore, Keep, Keepable},
     number::{hexadecimal, number, other_radix},
     remark::Remark,
 };

@@ -39,7 +39,8 @@ pub fn field_row(
     }
 }
 
-fn finding(remark: &Remark) -> Html {
+/// One remark: how bad, what, and what the controller would say.
+pub(crate) fn finding(remark: &Remark) -> Html {
     let (kind, word) = match remark.severity {
         Severity::Error => ("error", tr!("severity.error")),
         Severity::Warning => ("warning", tr!("severity.warning")),

@@ -68,12 +68,12 @@ pub fn HexView(props: &HexViewProps) -> Html {
 
 /// A part without parts, with the names above it.
 #[derive(Clone, Debug, PartialEq)]
-struct Leaf {
-    from: usize,
-    to: usize,
-    name: String,
-    text: String,
-    error: bool,
+pub(crate) struct Leaf {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) name: String,
+    pub(crate) text: String,
+    pub(crate) error: bool,
 }
 
 impl Leaf {
@@ -90,7 +90,8 @@ impl Leaf {
     }
 }
 
-fn leaves(node: &Node, above: &str) -> Vec<Leaf> {
+/// The parts without parts, in the order of their bytes.
+pub(crate) fn leaves(node: &Node, above: &str) -> Vec<Leaf> {
     if node.children.is_empty() {
         let name =
             if above.is_empty() { node.name.to_string() } else { format!("{above} › {}", node.name) };

@@ -27,3 +27,7 @@ pub use self::{
     text_field::TextField,
     window_table::{WindowTable, WindowTableProps, window},
 };
+pub(crate) use self::{
+    field::finding,
+    hex_view::{Leaf, leaves},
+};

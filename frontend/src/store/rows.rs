@@ -7,7 +7,7 @@ use std::{cell::RefCell, fmt, rc::Rc};
 
 use cipdeck_shared::{
     api::{BlockStatus, ExchangeView, Written},
-    config::{Block, BlockConfig, BlockId, MsgCipGeneric},
+    config::{Block, BlockConfig, BlockId},
     engine::BlockView,
 };
 use yew::Callback;
@@ -129,8 +129,8 @@ impl RowStore {
     }
 
     /// The configuration of a block that exists in this browser only.
-    pub fn put_new(&self, id: DeckId, config: Rc<MsgCipGeneric>) {
-        self.put_config(id, 0, Rc::new((*config).clone().into()));
+    pub fn put_new(&self, id: DeckId, config: BlockConfig) {
+        self.put_config(id, 0, Rc::new(config));
     }
 
     /// A newer status.

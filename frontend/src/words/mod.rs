@@ -1,26 +1,60 @@
 //! SEND_REQ and DATA_EXCH: blocks in Control Expert's terms, in a document of their own.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`edit`] | typed text → draft → words → findings; no browser in it |
+//! | [`desk`] | rows, drafts and commands of these blocks |
+//! | [`route`] | the addresses of its pages |
+//! | `list`, `new`, `block` | the pages |
+//! | [`grid`] | words in cells, each byte explained |
+//! | `verdict` | whether the exchange was correct, and whether the device agreed |
 
+mod block;
+pub mod desk;
+pub mod edit;
+mod explain;
+mod frame;
+pub mod grid;
+mod hooks;
 mod i18n;
+mod list;
+mod new;
+pub mod route;
+mod verdict;
 
 use yew::prelude::*;
 
-use self::i18n::tr;
-use crate::{address, theme::ThemeToggle};
+use self::{desk::Desk, frame::Frame};
+use crate::{
+    address, browser, editor::DraftStore, frame_stats::FrameStats, net::Relay, net::session, store::RowStore,
+};
+
+/// Where drafts are kept in the browser's local storage.
+const DRAFTS: &str = "cipdeck.words";
 
 /// The whole document.
 #[component]
 pub fn Words() -> Html {
-    use_effect_with((), |()| address::listen());
-    html! { <>
-        <header class="bar">
-            <a class="brand" href="/">{ "cipdeck" }</a>
-            <span class="bar-place">{ tr!("nav.words") }</span>
-            <nav aria-label={tr!("frame.elsewhere")}><ul>
-                <li><a href="/">{ tr!("frame.workbench") }</a></li>
-                <li><a href="/code">{ tr!("frame.code") }</a></li>
-            </ul></nav>
-            <ThemeToggle />
-        </header>
-        <main><h1>{ tr!("list.title") }</h1></main>
-    </> }
+    let desk = use_memo((), |()| open());
+    html! {
+        <ContextProvider<Desk> context={(*desk).clone()}>
+            <Frame />
+        </ContextProvider<Desk>>
+    }
+}
+
+/// Opens the desk of this browser, and starts to connect.
+fn open() -> Desk {
+    let stats = FrameStats::default();
+    stats.offer();
+    let rows = RowStore::new(stats.ask_for_frame());
+    let drafts = DraftStore::new(
+        browser::kept(DRAFTS).as_deref(),
+        std::rc::Rc::new(|text| browser::keep(DRAFTS, text)),
+    );
+    let relay = Relay::new(rows.clone(), Callback::from(move |ms| stats.spend(ms)));
+    relay.connect();
+    session::watch_activity();
+    address::listen();
+    Desk::new(rows, drafts, relay)
 }

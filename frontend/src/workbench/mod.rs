@@ -64,7 +64,7 @@ impl Workbench {
     pub fn new(rows: RowStore, drafts: DraftStore, relay: Relay, notices: NoticeStore) -> Self {
         for id in drafts.ids() {
             if let (DeckId::New(_), Some(draft)) = (id, drafts.draft(id)) {
-                rows.put_new(id, Rc::new(draft.config.clone()));
+                rows.put_new(id, draft.config.clone().into());
             }
         }
         let demo = Demo::new(rows.clone());
@@ -132,7 +132,7 @@ impl Workbench {
     pub fn add(&self, mut config: MsgCipGeneric) -> DeckId {
         config.name = self.unique_name(&config.name);
         let id = self.0.drafts.next_new();
-        self.0.rows.put_new(id, Rc::new(config.clone()));
+        self.0.rows.put_new(id, config.clone().into());
         self.0.drafts.put(id, Draft::new(config, None));
         id
     }
@@ -248,7 +248,7 @@ impl Workbench {
 
     fn keep(&self, id: DeckId, draft: Draft) {
         if id.stored().is_none() {
-            self.0.rows.put_new(id, Rc::new(draft.config.clone()));
+            self.0.rows.put_new(id, draft.config.clone().into());
         }
         self.0.drafts.put(id, draft);
     }

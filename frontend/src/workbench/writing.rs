@@ -2,14 +2,8 @@
 
 use std::rc::Rc;
 
-use cipdeck_shared::api::WriteTicket;
-
 use super::Workbench;
-use crate::{
-    net::{rest, rest::Answered},
-    notice::Notice,
-    store::DeckId,
-};
+use crate::{notice::Notice, store::DeckId};
 
 /// What somebody wants to do with a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +26,8 @@ pub enum Consent {
 }
 
 impl Consent {
-    pub(super) fn ticket(self) -> Option<String> {
+    /// The relay's ticket.
+    pub fn ticket(self) -> Option<String> {
         match self {
             Self::Ticket(ticket) => Some(ticket),
             Self::None | Self::Seen => None,
@@ -55,19 +50,6 @@ impl Workbench {
     /// The wish that has waited at this entry.
     pub fn take_wanted(&self, id: DeckId) -> Option<Intent> {
         self.0.wanted.borrow_mut().take_if(|(wanted, _)| *wanted == id).map(|(_, intent)| intent)
-    }
-
-    /// What a write of this revision would change, and the ticket for it.
-    pub async fn ask_write(&self, id: DeckId, revision: u64) -> Answered<WriteTicket> {
-        let DeckId::Stored(block) = id else {
-            return Err(rest::unreachable(String::new()));
-        };
-        rest::ask_write(block, revision).await
-    }
-
-    /// Opens the write window.
-    pub async fn open_window(&self, minutes: u32) -> Answered<()> {
-        rest::open_window(minutes).await
     }
 
     /// Tells what went wrong with a command.

@@ -14,4 +14,5 @@ mod monitor;
 mod office;
 mod reconnect;
 mod routes;
+mod words;
 mod write;

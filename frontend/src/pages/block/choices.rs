@@ -14,6 +14,11 @@ use crate::{editor::Edit, i18n::tr, kit::SelectField};
 
 /// `Channel`
 pub(super) fn channel(subject: &Subject, edit: &Callback<Edit>) -> Html {
+    channel_field(subject.draft.config.channel, &edit.reform(Edit::Channel))
+}
+
+/// Whose limits apply.
+pub(crate) fn channel_field(chosen: Channel, on_choice: &Callback<Channel>) -> Html {
     let words = |word: &'static str| match word {
         "controller" => tr!("form.channel_controller"),
         "monitor" => tr!("form.channel_monitor"),
@@ -23,11 +28,11 @@ pub(super) fn channel(subject: &Subject, edit: &Callback<Edit>) -> Html {
         id: "field-Channel".into(),
         name: "Channel".into(),
         label: "Channel".into(),
-        value: String::from(subject.draft.config.channel).into(),
+        value: String::from(chosen).into(),
         choices: CHANNELS.iter().map(|word| (*word, words(word))).collect(),
         readout: None,
         remarks: Vec::new(),
-        on_choice: edit.reform(|value: String| Edit::Channel(Channel::try_from(value).unwrap_or_default())),
+        on_choice: on_choice.reform(|value: String| Channel::try_from(value).unwrap_or_default()),
     }
     .draw()
 }
@@ -63,7 +68,11 @@ pub(super) fn mode(subject: &Subject, edit: &Callback<Edit>) -> Html {
 
 /// `Profile`
 pub(super) fn profile(subject: &Subject, edit: &Callback<Edit>) -> Html {
-    let chosen = subject.draft.config.profile;
+    profile_field(subject.draft.config.profile, &edit.reform(Edit::Profile))
+}
+
+/// What kind of device the target is.
+pub(crate) fn profile_field(chosen: Profile, on_choice: &Callback<Profile>) -> Html {
     SelectField {
         id: "field-Profile".into(),
         name: "Profile".into(),
@@ -78,7 +87,7 @@ pub(super) fn profile(subject: &Subject, edit: &Callback<Edit>) -> Html {
             Profile::Omron => tr!("profile.omron"),
         }),
         remarks: Vec::new(),
-        on_choice: edit.reform(|value: String| Edit::Profile(Profile::of_word(&value).unwrap_or_default())),
+        on_choice: on_choice.reform(|value: String| Profile::of_word(&value).unwrap_or_default()),
     }
     .draw()
 }

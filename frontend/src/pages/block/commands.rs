@@ -86,8 +86,14 @@ pub(super) fn Commands(props: &CommandsProps) -> Html {
             </button>
             <button type="button" class="button" disabled={can_stop} onclick={on_cancel} data-test="cancel">{ tr!("run.cancel") }</button>
             <span class="obstacle" data-test="obstacle">{ obstacle.unwrap_or_default() }</span>
-            if let Some(intent) = *asked {
-                <WriteDialog {intent} subject={subject.clone()} {on_answer} />
+            if let Some((intent, plan)) = (*asked).zip(subject.plan.as_ref()) {
+                <WriteDialog
+                    relay={bench.relay().clone()}
+                    stored={id.stored().filter(|_| subject.place == Place::Relay).map(|block| (block, subject.revision))}
+                    plan={Rc::new(plan.clone())}
+                    repeats={intent == Intent::SwitchOn && subject.is_cyclic()}
+                    {on_answer}
+                />
             }
         </div>
     }
@@ -106,15 +112,16 @@ fn ask(bench: &Workbench, asked: &UseStateHandle<Option<Intent>>, subject: &Subj
     });
 }
 
+/// What a key asks for.
 #[derive(Clone, Copy, PartialEq)]
-enum Key {
+pub(crate) enum Key {
     Run,
     Save,
 }
 
 /// Hears the page's two keys wherever the focus is.
 #[hook]
-fn use_keys(heard: Callback<Key>) {
+pub(crate) fn use_keys(heard: Callback<Key>) {
     use_effect(move || {
         let listener = Closure::<dyn Fn(KeyboardEvent)>::new(move |event: KeyboardEvent| {
             let key = match event.key().as_str() {

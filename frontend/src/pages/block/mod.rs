@@ -44,9 +44,14 @@ use crate::{
 
 pub(crate) use self::{
     axis::duration,
+    choices::{channel_field, profile_field},
     codes::error_words,
-    notice::words,
-    outcome::{age_words, decode, whole},
+    commands::{Key, use_keys},
+    notice::{choice, differences, words},
+    outcome::{age_words, decode, decoded, whole},
+    trouble::{acted, explain},
+    write_dialog::WriteDialog,
+    written::written,
 };
 
 /// Which block.

@@ -4,8 +4,9 @@ use std::rc::Rc;
 
 use cipdeck_shared::{
     api::{Problem, ProblemCode},
-    config::{Block, MsgCipGeneric},
+    config::Block,
 };
+use serde::Serialize;
 use yew::prelude::*;
 
 use super::subject::Subject;
@@ -69,9 +70,19 @@ fn conflict(bench: &Workbench, id: DeckId, mine: &Subject, current: &Rc<Block>) 
     };
     let rows =
         current.config.as_msg().map(|theirs| differences(&mine.draft.config, theirs)).unwrap_or_default();
+    choice(current.revision, &rows, on_mine.into(), on_theirs.into())
+}
+
+/// What differs, and whose shall stay.
+pub(crate) fn choice(
+    revision: u64,
+    rows: &[Difference],
+    on_mine: Callback<MouseEvent>,
+    on_theirs: Callback<MouseEvent>,
+) -> Html {
     html! {
         <div class="notice conflict" role="alert" data-test="conflict">
-            <p>{ tr!("conflict.text", revision = current.revision) }</p>
+            <p>{ tr!("conflict.text", revision = revision) }</p>
             <table class="differences">
                 <thead><tr><th>{ tr!("conflict.member") }</th><th>{ tr!("conflict.mine") }</th><th>{ tr!("conflict.theirs") }</th></tr></thead>
                 <tbody>{ for rows.iter().map(|(member, mine, theirs)| html! {
@@ -86,10 +97,13 @@ fn conflict(bench: &Workbench, id: DeckId, mine: &Subject, current: &Rc<Block>) 
     }
 }
 
+/// A member, and both values.
+pub(crate) type Difference = (String, String, String);
+
 /// Members that differ, with both values as JSON has them.
-fn differences(mine: &MsgCipGeneric, theirs: &MsgCipGeneric) -> Vec<(String, String, String)> {
+pub(crate) fn differences<C: Serialize>(mine: &C, theirs: &C) -> Vec<Difference> {
     // Through text: a second way to write JSON would cost more of the page than this costs of the time.
-    let value = |config| {
+    let value = |config: &C| {
         let text = serde_json::to_string(config).unwrap_or_default();
         serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default()
     };
@@ -98,12 +112,7 @@ fn differences(mine: &MsgCipGeneric, theirs: &MsgCipGeneric) -> Vec<(String, Str
     found
 }
 
-fn compare(
-    path: &str,
-    mine: &serde_json::Value,
-    theirs: &serde_json::Value,
-    found: &mut Vec<(String, String, String)>,
-) {
+fn compare(path: &str, mine: &serde_json::Value, theirs: &serde_json::Value, found: &mut Vec<Difference>) {
     if let (Some(mine), Some(theirs)) = (mine.as_object(), theirs.as_object()) {
         let nothing = serde_json::Value::Null;
         let members = mine.keys().chain(theirs.keys().filter(|member| !mine.contains_key(*member)));
@@ -121,6 +130,7 @@ fn compare(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cipdeck_shared::config::MsgCipGeneric;
 
     #[test]
     fn only_members_that_differ_are_shown() {

@@ -76,7 +76,8 @@ pub(crate) fn decode(last: &LastSuccess) -> Vec<Decoded> {
     dissect::decode(&request, &reply)
 }
 
-fn decoded(values: &[Decoded]) -> Html {
+/// Values with their names and types.
+pub(crate) fn decoded(values: &[Decoded]) -> Html {
     if values.is_empty() {
         return html! { <p class="quiet" data-test="decoded-empty">{ tr!("outcome.no_data") }</p> };
     }

@@ -73,7 +73,7 @@ fn detail(cause: Option<&Cause>) -> String {
 }
 
 /// The device may have, or has, carried out a request that failed.
-fn acted(cause: Option<&Cause>) -> Html {
+pub(crate) fn acted(cause: Option<&Cause>) -> Html {
     match cause {
         Some(cause) if cause.has_acted => {
             html! { <p class="warning-text" data-test="has-acted">{ tr!("error.has_acted") }</p> }
@@ -85,7 +85,7 @@ fn acted(cause: Option<&Cause>) -> Html {
     }
 }
 
-fn explain(entry: &Entry) -> Html {
+pub(crate) fn explain(entry: &Entry) -> Html {
     let confidence = match entry.confidence {
         Confidence::Confirmed => tr!("confidence.confirmed"),
         Confidence::Inferred => tr!("confidence.inferred"),

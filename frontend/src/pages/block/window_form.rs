@@ -5,17 +5,20 @@ use web_sys::HtmlInputElement;
 use yew::{platform::spawn_local, prelude::*};
 
 use super::notice::words;
-use crate::{i18n::tr, net::session, workbench::Workbench};
+use crate::{
+    i18n::tr,
+    net::{Relay, rest, session},
+};
 
 /// Minutes and a button, or why not. What becomes of it comes from the relay, as everybody hears it; a refusal goes to
 /// `refused`.
 pub(super) fn window_form(
-    bench: &Workbench,
+    relay: &Relay,
     node: &NodeRef,
     refused: &UseStateHandle<Option<String>>,
     on_cancel: Callback<MouseEvent>,
 ) -> Html {
-    let writing = bench.relay().writing();
+    let writing = relay.writing();
     let obstacle = match &writing.state {
         state if state.read_only => Some(tr!("writing.read_only")),
         state if state.stopped.is_some() => {
@@ -25,13 +28,13 @@ pub(super) fn window_form(
         _ => None,
     };
     let onsubmit = {
-        let (bench, node, refused) = (bench.clone(), node.clone(), refused.clone());
+        let (node, refused) = (node.clone(), refused.clone());
         move |event: SubmitEvent| {
             event.prevent_default();
             let minutes = node.cast::<HtmlInputElement>().and_then(|input| input.value().parse().ok());
-            let (bench, refused) = (bench.clone(), refused.clone());
+            let refused = refused.clone();
             spawn_local(async move {
-                let opened = bench.open_window(minutes.unwrap_or(MINUTES)).await;
+                let opened = rest::open_window(minutes.unwrap_or(MINUTES)).await;
                 refused.set(opened.err().map(|problem| words(&problem)));
             });
         }

@@ -5,30 +5,35 @@ use std::rc::Rc;
 
 use cipdeck_shared::{
     api::{Problem, ReadValue, WriteTicket},
-    config::{space_hex, write_hex},
+    config::{BlockId, space_hex, write_hex},
     plan::{MessagePlan, TriggerType},
     table::{self, Access},
-    wire::ServiceCode,
+    wire::LogicalKind,
 };
 use yew::{platform::spawn_local, prelude::*};
 
-use super::{notice::words, subject::Subject, window_form::window_form};
+use super::{notice::words, window_form::window_form};
 use crate::{
     browser,
     editor::hexadecimal,
-    hooks::{use_link, use_second, use_workbench},
+    hooks::{use_link_of, use_second},
     i18n::tr,
     kit::Dialog,
+    net::{Relay, rest},
     pages::block::whole,
-    workbench::{Consent, Intent, Place},
+    workbench::Consent,
 };
 
 #[derive(Clone, PartialEq, Properties)]
-pub(super) struct WriteDialogProps {
-    pub(super) intent: Intent,
-    pub(super) subject: Rc<Subject>,
+pub(crate) struct WriteDialogProps {
+    pub(crate) relay: Relay,
+    /// The stored block and its revision; none for one that this browser runs.
+    pub(crate) stored: Option<(BlockId, u64)>,
+    pub(crate) plan: Rc<MessagePlan>,
+    /// It is sent again and again.
+    pub(crate) repeats: bool,
     /// What the person has agreed to.
-    pub(super) on_answer: Callback<Consent>,
+    pub(crate) on_answer: Callback<Consent>,
 }
 
 /// What the relay said to the wish.
@@ -42,25 +47,24 @@ enum Said {
 
 /// Confirmed once; a write that repeats itself, twice. Through a relay it needs an open window and a ticket.
 #[component]
-pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
-    let WriteDialogProps { intent, subject, on_answer } = props;
-    let bench = use_workbench();
-    use_link();
+pub(crate) fn WriteDialog(props: &WriteDialogProps) -> Html {
+    let WriteDialogProps { relay, plan, on_answer, repeats, stored } = props;
+    let (repeats, stored) = (*repeats, *stored);
+    use_link_of(relay);
     use_second(true);
-    let repeats = *intent == Intent::SwitchOn && subject.is_cyclic();
     let confirmed_once = use_state(|| false);
     let said = use_state(|| Said::Nothing);
     let asked = use_state(|| 0_u32);
     let (node, no_window) = (use_node_ref(), use_state(|| None::<String>));
-    let by_relay = subject.place == Place::Relay;
-    let has_window = bench.relay().writing().state.window.is_some();
-    use_effect_with((by_relay && has_window, *asked, subject.id), {
-        let (said, bench) = (said.clone(), bench.clone());
-        move |(wanted, _, id)| {
+    let by_relay = stored.is_some();
+    let has_window = relay.writing().state.window.is_some();
+    use_effect_with((stored.filter(|_| has_window), *asked), {
+        let said = said.clone();
+        move |(wanted, _)| {
             said.set(Said::Nothing);
-            if let (true, Some(row)) = (*wanted, bench.rows().row(*id)) {
+            if let Some((id, revision)) = *wanted {
                 spawn_local(async move {
-                    said.set(match bench.ask_write(row.id, row.revision).await {
+                    said.set(match rest::ask_write(id, revision).await {
                         #[expect(clippy::cast_precision_loss, reason = "a minute or so")]
                         Ok(it) => {
                             let ends_ms = browser::now_ms() + it.good_for_ms as f64;
@@ -93,10 +97,9 @@ pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
     let on_close = on_answer.reform(|()| Consent::None);
     if by_relay && !has_window {
         return html! {
-            <Dialog title={tr!("window.title")} test="window-dialog" {on_close}>{ window_form(&bench, &node, &no_window, no) }</Dialog>
+            <Dialog title={tr!("window.title")} test="window-dialog" {on_close}>{ window_form(relay, &node, &no_window, no) }</Dialog>
         };
     }
-    let Some(plan) = &subject.plan else { return html! {} };
     let (title, confirm) = match (*confirmed_once, repeats) {
         (true, _) => (tr!("write.cyclic_title"), tr!("write.cyclic_do")),
         (false, true) => (tr!("write.title"), tr!("write.next")),
@@ -109,7 +112,7 @@ pub(super) fn WriteDialog(props: &WriteDialogProps) -> Html {
                 if *confirmed_once {
                     <p class="warning-text">{ every(plan) }</p>
                 } else {
-                    { what(subject, plan, &said) }
+                    { what(plan, &said) }
                 }
                 if by_relay {
                     { answer(&said, again) }
@@ -149,10 +152,11 @@ fn every(plan: &MessagePlan) -> AttrValue {
     }
 }
 
-fn what(subject: &Subject, plan: &MessagePlan, said: &Said) -> Html {
-    let app = &subject.draft.config.app_cfg;
-    let class = u16::try_from(app.class).unwrap_or_default();
-    let service = ServiceCode(u8::try_from(app.service).unwrap_or_default());
+fn what(plan: &MessagePlan, said: &Said) -> Html {
+    let request = plan.request();
+    let of_path = |kind| request.path().logical(kind).unwrap_or_default();
+    let class = u16::try_from(of_path(LogicalKind::Class)).unwrap_or_default();
+    let service = request.service();
     let name = table::service(class, service).map_or("", |entry| entry.name);
     let class_name = table::class(class).map_or("", |entry| entry.name);
     let access = match plan.access() {
@@ -162,15 +166,17 @@ fn what(subject: &Subject, plan: &MessagePlan, said: &Said) -> Html {
     let ticket = if let Said::Ticket(it, _) = said { Some(it) } else { None };
     // Through a relay: the very bytes that it will send.
     let bytes = ticket.map_or_else(|| write_hex(plan.bytes()), |it| it.request.clone());
-    let number = |value: i64| format!("{value} = {}", hexadecimal(value));
+    let number = |value: u32| format!("{value} = {}", hexadecimal(value.into()));
+    let [instance, attribute] =
+        [LogicalKind::Instance, LogicalKind::Attribute].map(|kind| number(of_path(kind)));
     html! { <>
         <p>{ access }</p>
         <dl class="facts">
             <dt>{ tr!("write.target") }</dt><dd>{ plan.target().to_string() }</dd>
-            <dt>{ tr!("write.service") }</dt><dd>{ number(app.service) }{ " " }{ name }</dd>
+            <dt>{ tr!("write.service") }</dt><dd>{ number(service.0.into()) }{ " " }{ name }</dd>
             <dt>{ tr!("write.path") }</dt>
             <dd>
-                { tr!("write.object", class = number(app.class), name = class_name, instance = number(app.instance), attribute = number(app.attribute)) }
+                { tr!("write.object", class = number(class.into()), name = class_name, instance = instance, attribute = attribute) }
             </dd>
             <dt>{ tr!("write.bytes") }</dt><dd class="mono" data-test="write-bytes">{ spaced(&bytes) }</dd>
             if let Some(it) = ticket {

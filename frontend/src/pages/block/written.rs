@@ -7,7 +7,7 @@ use super::write_dialog::value;
 use crate::{i18n::tr, kit::Shape};
 
 /// Old, new, read back, and whether they are the same. That they are not must not be missed.
-pub(super) fn written(written: &Written) -> Html {
+pub(crate) fn written(written: &Written) -> Html {
     let (class, shape, verdict) = match written.is_equal {
         Some(true) => ("written tick", Shape::Tick, tr!("written.equal")),
         Some(false) => ("written cross", Shape::Cross, tr!("written.different")),

@@ -1,5 +1,7 @@
 use std::cell::Cell;
 
+use cipdeck_shared::config::MsgCipGeneric;
+
 use super::*;
 
 /// A store whose frames the test draws.
@@ -53,7 +55,7 @@ fn many_changes_wake_a_row_once_per_frame_and_its_neighbour_never() {
 fn a_snapshot_replaces_stored_blocks_and_keeps_new_ones() {
     let (store, draw) = store();
     let new = DeckId::New(1);
-    store.put_new(new, Rc::new(MsgCipGeneric::product_name("0,0")));
+    store.put_new(new, MsgCipGeneric::product_name("0,0").into());
     store.snapshot(vec![block(1, 1, "0,0"), block(2, 1, "0,0")], vec![status(1, 5)]);
     store.snapshot(vec![block(2, 4, "0,0"), block(3, 1, "0,0")], vec![]);
     draw();
