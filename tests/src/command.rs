@@ -70,6 +70,18 @@ impl Service {
         Self::started(Process::start(Path::new("sh"), [&shell[..], &serve(listen, folder)].concat())).await
     }
 
+    /// `cipdeck serve` of a project, with its other data in `data` or nowhere. As [`Service::serve_with_limits`].
+    pub async fn serve_project(project: &Path, data: Option<&Path>) -> Self {
+        let program = tools::cipdeck();
+        let utf8 = |path: &Path| path.to_str().expect("a path in UTF-8").to_owned();
+        let mut arguments =
+            vec!["-c".to_owned(), "trap '' XFSZ; exec \"$0\" \"$@\"".to_owned(), utf8(&program)];
+        arguments.extend(["serve", "--listen", "127.0.0.1:0", "--local", "engineer"].map(str::to_owned));
+        arguments.extend(["--allow".to_owned(), LOOPBACK.to_owned(), "--project".to_owned(), utf8(project)]);
+        arguments.extend(data.into_iter().flat_map(|data| ["--data".to_owned(), utf8(data)]));
+        Self::started(Process::start(Path::new("sh"), arguments)).await
+    }
+
     /// `cipdeck simulate` with more arguments.
     pub async fn simulate(listen: &str, more: &[&str]) -> Self {
         Self::start(&[&["simulate", "--listen", listen], more].concat()).await

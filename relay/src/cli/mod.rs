@@ -8,6 +8,7 @@ mod discover;
 mod exit;
 mod explain;
 mod once;
+mod project;
 mod read_only;
 mod remote;
 mod report;
@@ -82,6 +83,8 @@ enum Command {
     Backup(backup::Backup),
     /// Go back to a backup.
     Restore(backup::Restore),
+    /// A project: check its folder, pack it, unpack it; `serve --project` serves it.
+    Project(project::Project),
     /// Check a block in a file: all findings, and the bytes that would be sent.
     Check(check::Check),
     /// Code of controllers and programs: from one language to another; losses and what is not understood on stderr.
@@ -124,6 +127,7 @@ impl Cli {
             Command::ReadOnly(switch) => switch.execute(),
             Command::Backup(backup) => backup.execute(),
             Command::Restore(restore) => restore.execute(),
+            Command::Project(project) => project.execute(),
             Command::Check(check) => check.execute(),
             Command::Convert(convert) => convert.execute(),
         }

@@ -14,6 +14,9 @@ use cipdeck_shared::tag::Types;
 
 use crate::plant::{MAX_DEVICES, MAX_GROUPS};
 
+/// The rule of what is wrong with a file as a file.
+pub(crate) const FILE_RULE: &str = "project_file";
+
 /// Everything that is wrong, and everything that somebody should know, by file. `field` is the place.
 pub(crate) fn findings(files: &BTreeMap<String, String>, read: &Read) -> Vec<Finding> {
     let mut found = Found { files, findings: Vec::new() };
@@ -54,7 +57,7 @@ impl Found<'_> {
     fn of_files(&mut self, error: &ProjectError, severity: Severity) {
         let place = error.position.map(|place| format!(":{}:{}", place.line, place.column));
         let field = format!("{}{}", error.file, place.unwrap_or_default());
-        self.push(field, severity, "project_file", error.what.to_string());
+        self.push(field, severity, FILE_RULE, error.what.to_string());
     }
 
     fn group(&mut self, path: &str, group: &ProjectGroup, types: &Types) {

@@ -27,6 +27,12 @@ pub(crate) enum FilesError {
     /// Files that cannot be read, all of them.
     #[error("the project cannot be read:\n{}", lines(.0))]
     Wrong(Vec<ProjectError>),
+    /// Something is there already.
+    #[error("{0} has a project already: give a folder that is empty or not there")]
+    NotEmpty(String),
+    /// The folder cannot be read.
+    #[error("cannot read {0}: {1}")]
+    Unreadable(String, #[source] std::io::Error),
     /// The database knows a project, and the folder is none.
     #[error(
         "there is no cipdeck.json in this folder, and the data folder belongs to a project: is it the right folder? To make \

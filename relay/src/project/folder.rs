@@ -25,8 +25,7 @@ pub(super) struct Undo(Vec<(String, Option<String>)>);
 impl Folder {
     /// Reads what could belong to a project. A folder that is not there is made.
     pub(crate) fn open(root: &Path) -> Result<Self, FilesError> {
-        let unreadable =
-            |error: io::Error| FilesError::Write { file: root.display().to_string(), source: error };
+        let unreadable = |error| FilesError::Unreadable(root.display().to_string(), error);
         fs::create_dir_all(root).map_err(unreadable)?;
         let Walk { known, errors, .. } = Walk::through(root);
         if errors.is_empty() {
@@ -34,6 +33,21 @@ impl Folder {
         } else {
             Err(FilesError::Wrong(errors))
         }
+    }
+
+    /// The files of a folder that is there; nothing is made.
+    pub(crate) fn look(root: &Path) -> Result<BTreeMap<String, String>, FilesError> {
+        let unreadable = |error| FilesError::Unreadable(root.display().to_string(), error);
+        fs::read_dir(root).map_err(unreadable)?;
+        Self::open(root).map(|folder| folder.known)
+    }
+
+    /// Writes files into a folder that has none yet.
+    pub(crate) fn fill(self, files: BTreeMap<String, String>) -> Result<(), FilesError> {
+        if !self.known.is_empty() {
+            return Err(FilesError::NotEmpty(self.root.display().to_string()));
+        }
+        self.apply(&files.into_iter().map(|(path, text)| (path, Some(text))).collect()).map(drop)
     }
 
     /// What is known of the files.

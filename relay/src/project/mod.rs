@@ -16,7 +16,7 @@ mod walk;
 mod wanted;
 
 pub(crate) use self::archive::{ArchiveError, MAX_ARCHIVE, pack, unpack};
-pub(crate) use self::check::findings;
+pub(crate) use self::check::{FILE_RULE, findings};
 pub(crate) use self::error::FilesError;
 pub(crate) use self::folder::Folder;
 pub(crate) use self::import::import;

@@ -23,6 +23,7 @@ mod network;
 mod peers;
 mod permit;
 mod persistence;
+mod project;
 mod random_inputs;
 mod reconnect;
 mod record;
