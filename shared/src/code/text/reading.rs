@@ -108,6 +108,30 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
         None
     }
 
+    /// [`Self::text`]; that nobody sets it is told, too.
+    pub(in crate::code) fn text_or_told(&mut self, key: &str, member: &str) -> Option<&'s str> {
+        if !self.has(key) {
+            self.say(Severity::Error, RemarkKind::NotConstant(member.into()));
+        }
+        self.text(key, member)
+    }
+
+    /// Whether anybody sets a variable.
+    pub(in crate::code) fn has(&self, key: &str) -> bool {
+        self.memory.cell(key).is_some()
+    }
+
+    /// A word that stands for a value, such as `Type#Value`.
+    pub(in crate::code) fn word(&mut self, key: &str) -> Option<&'a str> {
+        let cell = self.cell(key, key)?;
+        cell.value.reference().map(|reference| reference.root).or(Some(""))
+    }
+
+    /// The message begins at this item at the latest.
+    pub(in crate::code) fn begins(&mut self, item: &Item<'a>) {
+        self.lines.start = self.lines.start.min(item.place.line);
+    }
+
     /// An argument of the call, or the member of the instance that stands for it: `fb(Timeout := 5)`,
     /// `fb.Timeout := 5`. The key under which it is found.
     pub(in crate::code) fn key(call: &Call<'a>, position: usize, name: &str) -> Option<String> {
@@ -177,35 +201,43 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
         let low = low.unwrap_or_else(|| set.iter().copied().min().unwrap_or(0).clamp(0, 1));
         let last = set.iter().copied().max();
         let all = last.map_or(0, |last| usize::try_from(last - low + 1).unwrap_or(0));
-        let length = length.unwrap_or(all).min(MAX_BYTES);
-        let mut bytes = Vec::with_capacity(length);
-        let mut missing = Vec::new();
-        for at in (low..).take(length) {
-            let element = alloc::format!("{member}[{at}]");
+        let values = self.elements(key, member, low, length.unwrap_or(all), (0, 255));
+        values.into_iter().map(|value| u8::try_from(value & 0xFF).unwrap_or(0)).collect()
+    }
+
+    /// So many elements of an array from an index on. What is not set is 0, and told.
+    pub(in crate::code) fn elements(
+        &mut self,
+        key: &str,
+        member: &str,
+        from: i128,
+        count: usize,
+        (low, high): (i64, i64),
+    ) -> Vec<i64> {
+        if count > MAX_ELEMENTS {
+            self.say(Severity::Error, RemarkKind::Told(alloc::format!("{member} is far too long")));
+        }
+        let (mut values, mut missing) = (Vec::new(), Vec::new());
+        for at in (from..).take(count.min(MAX_ELEMENTS)) {
             let path = alloc::format!("{key}[{at}]");
             if self.memory.cell(&path).is_none() {
                 missing.push(at);
             }
-            let value = self.integer(&path, &element, 0, 255);
-            let byte = value.map(|value| u8::try_from(value & 0xFF).unwrap_or(0));
-            bytes.push(byte.unwrap_or(0));
+            values.push(self.integer(&path, &alloc::format!("{member}[{at}]"), low, high).unwrap_or(0));
         }
         if let (Some(first), Some(last)) = (missing.first(), missing.last()) {
+            let count = missing.len();
             let words = alloc::format!(
-                "{member}: {} elements from [{first}] to [{last}] are not set: they are 0",
-                missing.len()
+                "{member}: {count} elements from [{first}] to [{last}] are not set: they are 0"
             );
             self.say(Severity::Warning, RemarkKind::Told(words));
         }
-        if length == MAX_BYTES {
-            self.say(Severity::Error, RemarkKind::TooDeep);
-        }
-        bytes
+        values
     }
 }
 
 /// More than any message has.
-const MAX_BYTES: usize = 4096;
+const MAX_ELEMENTS: usize = 4096;
 
 /// The lower bound that an array is declared with.
 pub(in crate::code) fn lower_bound(script: &Script<'_>, key: &str) -> Option<i128> {

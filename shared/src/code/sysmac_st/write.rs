@@ -1,0 +1,211 @@
+//! A block as variables and statements.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::Write;
+
+use super::{SEGMENTS, route, width};
+use crate::code::Code;
+use crate::code::change::{Change, Grade, Why};
+use crate::code::header::harmless;
+use crate::code::message::{Message, Tells, spaced};
+use crate::code::name::identifier;
+use crate::code::text::quoted;
+use crate::config::{BlockConfig, Host};
+
+/// ms.
+const STEP: u32 = 100;
+
+/// Bytes of a reply. W502 p. 765.
+const MAX_REPLY: i64 = 492;
+
+/// A block as Structured Text.
+pub(in crate::code) fn export(block: &BlockConfig) -> Code {
+    let message = match Message::of(block) {
+        Ok(message) => message,
+        Err(code) => return code,
+    };
+    let name = identifier(&message.config.name);
+    let mut changes = message.untold(Tells { res_data_size: true, ..Tells::default() });
+    let (route, whole) = route::write(&message.path);
+    target_changes(&message, &route, whole, &mut changes);
+    if name != message.config.name {
+        changes.push(Change::new(&"name", &message.config.name, &name, Grade::Carried, Why::NameCharacters));
+    }
+    if !message.members().is_empty() {
+        let members = format!("{:?}", message.members());
+        changes.push(Change::new(&"AppCfg.MemberId", &members, &"", Grade::Request, Why::NoMemberSegments));
+    }
+    let mut out = String::new();
+    let section = Section { message: &message, name: &name, route: &route };
+    section.about(&mut out);
+    section.declarations(&mut out);
+    section.path(&mut out);
+    section.data(&mut out);
+    match message.plan.connection() {
+        None => {
+            let timeout = steps(message.plan.ucmm_timeout_ms(), "TargetCfg.UcmmTimeout", &mut changes);
+            section.unconnected(timeout, &mut out);
+        }
+        Some(connection) => {
+            let open = steps(message.plan.ucmm_timeout_ms(), "TargetCfg.UcmmTimeout", &mut changes);
+            let send = steps(connection.timeout_ms, "TargetCfg.ConnMsgTimeout", &mut changes);
+            section.connected(open, send, connection.close, &mut out);
+        }
+    }
+    Code { text: out, changes }
+}
+
+fn target_changes(message: &Message<'_>, route: &str, whole: bool, changes: &mut Vec<Change>) {
+    let path = &message.config.target_cfg.path;
+    let mut other = |is_other: bool, grade: Grade, why: Why| {
+        if is_other {
+            changes.push(Change::new(&"TargetCfg.Path", path, &route, grade, why));
+        }
+    };
+    let endpoint = message.endpoint();
+    other(endpoint.is_none(), Grade::Carried, Why::NoBuiltIn);
+    other(endpoint.is_some_and(crate::config::Endpoint::has_unusual_port), Grade::Request, Why::NoTcpPort);
+    other(endpoint.is_some_and(|it| matches!(it.host, Host::Name(_))), Grade::Request, Why::NoHostName);
+    other(!whole, Grade::Request, Why::NoRoute);
+}
+
+/// Tenths of a second, rounded up.
+fn steps(ms: u32, member: &str, changes: &mut Vec<Change>) -> u32 {
+    let steps = ms.div_ceil(STEP);
+    if steps * STEP != ms {
+        let (from, to) = (format!("{ms} ms"), format!("{} ms", steps * STEP));
+        changes.push(Change::new(&member, &from, &to, Grade::Adjusted, Why::TimeoutStep(STEP)));
+    }
+    steps
+}
+
+struct Section<'m> {
+    message: &'m Message<'m>,
+    name: &'m str,
+    route: &'m str,
+}
+
+impl Section<'_> {
+    fn about(&self, out: &mut String) {
+        let app = &self.message.config.app_cfg;
+        let words = harmless(&format!(
+            "{}: service {}, class {}, instance {}, attribute {}",
+            self.message.config.name,
+            self.message.service_words(),
+            self.message.class_words(),
+            app.instance,
+            app.attribute,
+        ));
+        line(out, &format!("(* {words} *)"));
+        line(out, &format!("(* request {} *)", spaced(self.message.plan.bytes())));
+        line(
+            out,
+            "(* The variables are entered in the table of variables; the program begins after END_VAR. *)",
+        );
+    }
+
+    fn declarations(&self, out: &mut String) {
+        let name = self.name;
+        let connected = self.message.plan.connection();
+        let last = self.message.data().len().saturating_sub(1);
+        let reply = self.message.config.res_data_size;
+        let block = if connected.is_some() { "CIPSend" } else { "CIPUCMMSend" };
+        line(out, "VAR");
+        let mut declare = |ending: &str, kind: &str| line(out, &format!("    {name}{ending} : {kind};"));
+        declare("", block);
+        if let Some(connection) = connected {
+            declare("_Open", "CIPOpen");
+            declare("_Handle", "_sCIP_HANDLE");
+            if connection.close {
+                declare("_Close", "CIPClose");
+            }
+        }
+        declare("_Start", "BOOL");
+        declare("_Path", "_sREQUEST_PATH_EX");
+        declare("_Req", &format!("ARRAY[0..{last}] OF BYTE"));
+        declare("_Res", &format!("ARRAY[0..{}] OF BYTE", reply - 1));
+        for (ending, kind) in [
+            ("_Done", "BOOL"),
+            ("_Error", "BOOL"),
+            ("_ErrorID", "WORD"),
+            ("_ErrorIDEx", "DWORD"),
+            ("_RespSize", "UINT"),
+        ] {
+            declare(ending, kind);
+        }
+        line(out, "END_VAR");
+        if reply > MAX_REPLY {
+            line(out, &format!("(* A reply has at most {MAX_REPLY} bytes of data. *)"));
+        }
+        out.push('\n');
+    }
+
+    fn path(&self, out: &mut String) {
+        let app = &self.message.config.app_cfg;
+        let name = self.name;
+        let has_attribute = app.attribute != 0;
+        line(out, &format!("{name}_Path.isAttributeID := {};", if has_attribute { "TRUE" } else { "FALSE" }));
+        for ((number, format), value) in SEGMENTS.iter().zip([app.class, app.instance, app.attribute]) {
+            if *number == "AttributeID" && !has_attribute {
+                continue;
+            }
+            let width = width(u32::try_from(value).unwrap_or(0));
+            line(out, &format!("{name}_Path.{format} := _eCIP_LOGICAL_FORMAT#{width};"));
+            line(out, &format!("{name}_Path.{number} := 16#{value:02X}; (* {value} *)"));
+        }
+        out.push('\n');
+    }
+
+    fn data(&self, out: &mut String) {
+        for (at, byte) in self.message.data().iter().enumerate() {
+            line(out, &format!("{}_Req[{at}] := BYTE#16#{byte:02X}; (* {byte} *)", self.name));
+        }
+    }
+
+    /// The inputs that both ways have.
+    fn service(&self) -> String {
+        let (name, size) = (self.name, self.message.data().len());
+        let service = self.message.config.app_cfg.service;
+        format!(
+            "    ServiceCode := BYTE#16#{service:02X}, (* {} *)\n    RqPath := {name}_Path,\n    ServiceDat := \
+             {name}_Req[0],\n    Size := UINT#{size},\n    RespServiceDat := {name}_Res[0],\n    Done => \
+             {name}_Done,\n    Error => {name}_Error,\n    ErrorID => {name}_ErrorID,\n    ErrorIDEx => \
+             {name}_ErrorIDEx,\n    RespSize => {name}_RespSize);",
+            harmless(&self.message.service_words())
+        )
+    }
+
+    fn unconnected(&self, timeout: u32, out: &mut String) {
+        let (name, route) = (self.name, quoted(self.route));
+        line(out, &format!("{name}(Execute := {name}_Start,\n    RoutePath := {route},"));
+        line(out, &format!("    TimeOut := UINT#{timeout}, (* {} ms *)", timeout * STEP));
+        line(out, &self.service());
+    }
+
+    fn connected(&self, open: u32, send: u32, close: bool, out: &mut String) {
+        let (name, route) = (self.name, quoted(self.route));
+        line(out, &format!("{name}_Open(Execute := {name}_Start,\n    RoutePath := {route},"));
+        line(
+            out,
+            &format!("    TimeOut := UINT#{open}, (* {} ms *)\n    Handle => {name}_Handle);", open * STEP),
+        );
+        line(out, &format!("{name}(Execute := {name}_Open.Done,\n    Handle := {name}_Handle,"));
+        line(out, &format!("    TimeOut := UINT#{send}, (* {} ms *)", send * STEP));
+        line(out, &self.service());
+        if close {
+            line(
+                out,
+                &format!(
+                    "{name}_Close(Execute := {name}.Done OR {name}.Error,\n    Handle := {name}_Handle);"
+                ),
+            );
+        }
+    }
+}
+
+fn line(out: &mut String, text: &str) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{text}");
+}
