@@ -131,7 +131,7 @@ mod tests {
     fn several_blocks_are_read_beside_one_that_is_none() {
         let one = export(&MsgCipGeneric::product_name("0,0").into()).text;
         let marked = one.replacen('{', "{\"id\":\"b1\",\"revision\":7,", 1);
-        let text = format!("[\n{one},\n{{\"name\": \"}}]\\\"\"}},\n{marked}\n]");
+        let text = format!("[\n{one},\n{{\"name\": [\"}}]\\\"\"]}},\n{marked}\n]");
         let read = import(&text);
         assert_eq!(read.blocks.len(), 2);
         assert_eq!(read.blocks[0].config, read.blocks[1].config);

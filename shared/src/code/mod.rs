@@ -26,6 +26,7 @@ mod message;
 #[allow(dead_code, reason = "the dialects will")]
 mod name;
 mod parameters;
+mod program;
 mod pycomm3;
 mod recognise;
 mod remark;

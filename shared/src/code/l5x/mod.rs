@@ -14,6 +14,7 @@ mod tag;
 mod write;
 mod xml;
 
+pub(super) use self::path::link;
 pub(super) use self::read::import;
 pub(super) use self::write::export;
 

@@ -30,7 +30,7 @@ pub(super) fn connection_path(message: &Message<'_>) -> String {
 }
 
 /// A slot, or an address.
-pub(crate) fn link(port: &PortSegment) -> String {
+pub(in crate::code) fn link(port: &PortSegment) -> String {
     match (port.slot(), port.address()) {
         (Some(slot), _) => slot.to_string(),
         (None, address) => address.unwrap_or_default().to_string(),
