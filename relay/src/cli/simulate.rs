@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use cipdeck_shared::engine::Millis;
-use cipdeck_shared::sim::{Device, Fault, Quirk, SimConfig, SimProfile, TagMemory, Tags};
+use cipdeck_shared::sim::{Device, Fault, Quirk, Registers, SimConfig, SimProfile, TagMemory, Tags};
 use cipdeck_shared::wire::SocketAddress;
 use clap::Args;
 use tokio::net::{TcpListener, UdpSocket};
@@ -75,6 +75,7 @@ impl Simulate {
             max_size: self.connection_size.unwrap_or(usual.max_size),
             large: !self.no_large,
             tags: tags.or(usual.tags),
+            registers: Some(Registers::default()),
             ..usual
         };
         let clock = Clock::start();

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use cipdeck_shared::config::{Endpoint, Host};
 use cipdeck_shared::engine::{ConnectError, LinkId};
-use cipdeck_shared::sim::Device;
+use cipdeck_shared::sim::{Device, Registers, SimConfig};
 use tokio::io::DuplexStream;
 use tokio::net::TcpStream;
 
@@ -73,7 +73,8 @@ pub(super) fn built_in_ends(link: LinkId) -> Ends {
 
 /// A device of the relay's own.
 pub(super) fn built_in_device() -> Arc<Mutex<Device>> {
-    Arc::new(Mutex::new(Device::default()))
+    let registers = Some(Registers::default());
+    Arc::new(Mutex::new(Device::new(SimConfig { registers, ..SimConfig::default() })))
 }
 
 async fn admitted(endpoint: &Endpoint, lists: &Lists) -> Result<Vec<SocketAddr>, (ConnectError, String)> {

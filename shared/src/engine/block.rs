@@ -3,7 +3,6 @@
 //! Source: 2080-RM001D p. 179, 217, 221 and the message timing of FactoryTalk Design Workbench; decisions where
 //! the manual is silent are in docs/ARCHITECTURE.md.
 
-use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -292,7 +291,7 @@ pub struct BlockView {
     /// Edges that were left out.
     pub edges_dropped: u64,
     /// Of a SEND_REQ or DATA_EXCH, from its first start on; [`Management`](super::Management) shows them.
-    pub words: Option<Box<Words>>,
+    pub words: Option<Arc<Words>>,
 }
 
 #[cfg(test)]

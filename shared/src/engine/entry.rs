@@ -1,6 +1,5 @@
 //! One block inside the engine: its machine, its trigger, and the message that is under way.
 
-use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -34,7 +33,7 @@ pub(super) struct Entry {
     /// Message router bytes of the newest message.
     pub(super) request: Arc<[u8]>,
     /// Of a SEND_REQ or DATA_EXCH.
-    words: Option<Box<Words>>,
+    words: Option<Arc<Words>>,
     edges: Vec<(u64, StatusBits)>,
     edges_dropped: u64,
 }
@@ -130,15 +129,16 @@ impl Entry {
             Ok(plan) => plan.words().map(|plan| Words::started(Arc::clone(plan), before)),
             Err(invalid) => invalid.report.map(|report| Words::refused(report, before)),
         }
-        .map(Box::new);
+        .map(Arc::new);
     }
 
     /// The message has ended: what the device itself has answered is kept.
     pub(super) fn end_words(&mut self) {
-        let (Some(words), Some(active)) = (&mut self.words, &self.active) else { return };
+        let (Some(words), Some(active)) = (&self.words, &self.active) else { return };
         // The refusal of a connection is no answer to the message, nor is a reply that makes no sense.
         if self.block.is_answered() {
-            words.reply = active.exchange.response().unwrap_or_default().to_vec();
+            let reply = active.exchange.response().unwrap_or_default().to_vec();
+            self.words = Some(Arc::new(words.answered(reply)));
         }
     }
 

@@ -36,6 +36,10 @@ impl Words {
         Self { start: Ok(plan), exchange, reply: Vec::new() }
     }
 
+    pub(super) fn answered(&self, reply: Vec<u8>) -> Self {
+        Self { start: self.start.clone(), exchange: self.exchange, reply }
+    }
+
     /// A start that is refused: the activity bit never rises.
     pub(super) const fn refused(report: u8, before: u8) -> Self {
         Self { start: Err(report), exchange: before, reply: Vec::new() }

@@ -9,6 +9,7 @@ use crate::wire::SocketAddress;
 
 use super::fault::Fault;
 use super::identity::SimIdentity;
+use super::modbus::Registers;
 use super::module::SimModule;
 use super::profile::SimProfile;
 use super::tags::Tags;
@@ -38,6 +39,8 @@ pub struct SimConfig {
     pub quirks: Vec<Quirk>,
     /// The tags of a controller.
     pub tags: Option<Tags>,
+    /// The registers of its Modbus object, if it has one.
+    pub registers: Option<Registers>,
 }
 
 impl Default for SimConfig {
@@ -54,6 +57,7 @@ impl Default for SimConfig {
             large: true,
             quirks: Vec::new(),
             tags: None,
+            registers: None,
         }
     }
 }

@@ -66,7 +66,11 @@ impl Device {
             ip: Some(config.address.ip),
             identity: config.identity.clone(),
         };
-        let modules = [own].into_iter().chain(config.modules.iter().cloned()).map(Objects::new).collect();
+        let modules = [own].into_iter().chain(config.modules.iter().cloned()).map(Objects::new);
+        let mut modules: Vec<_> = modules.collect();
+        if let Some(own) = modules.first_mut() {
+            own.registers.clone_from(&config.registers);
+        }
         Self {
             config,
             modules,

@@ -30,7 +30,7 @@
 //! | Assembly 4/150 | 3: 32 bytes of output, writable, remembered |
 //! | Connection Manager 6/1 | 1 to 8: what it has counted, Get_Attributes_All |
 //! | DPI Parameter 147/n | 9: the value; n = 1, 7, 41, 42, 43, see below |
-//! | Modbus 68/1 | none; 0x4E reads and 0x50 writes holding registers, 0 to 999, each its own number at first |
+//! | Modbus 68/1 | none; 0x4E reads and 0x50 writes [holding registers](Registers); only of the device itself, and if it has some |
 //! | TCP/IP Interface 245/1 | 5; only of a module with an address |
 //! | Ethernet Link 246/1 | 1 to 3; only of a module with an address |
 //!
@@ -101,6 +101,7 @@ pub use self::datagram::handle_datagram;
 pub use self::device::Device;
 pub use self::fault::{Fault, UnknownFault};
 pub use self::identity::SimIdentity;
+pub use self::modbus::Registers;
 pub use self::module::{BACKPLANE, ETHERNET, SimModule};
 pub use self::profile::{SimProfile, UnknownProfile};
 pub use self::tags::{

@@ -20,60 +20,62 @@ const MAX_QUANTITY: u16 = 123;
 /// Registers that are there.
 const REGISTERS: usize = 1_000;
 
-/// The registers: each holds its own number at first.
+/// The registers, and a request to them.
+type CarryOut = fn(&mut [u16], ServiceCode, &[u8]) -> Result<Vec<u8>, GeneralStatus>;
+
+/// Holding registers 0 to 999: each holds its own number at first. Behind a pointer, so that a program whose simulated
+/// devices have none does not carry the code of the object.
 #[derive(Clone, Debug)]
-pub(super) struct Registers(Vec<u16>);
+pub struct Registers {
+    values: Vec<u16>,
+    carry_out: CarryOut,
+}
 
 impl Default for Registers {
     fn default() -> Self {
-        Self((0..).take(REGISTERS).collect())
+        Self { values: (0..).take(REGISTERS).collect(), carry_out }
     }
 }
 
 impl Registers {
     pub(super) fn carry_out(&mut self, service: ServiceCode, data: &[u8]) -> Result<Vec<u8>, Refusal> {
-        match service {
-            READ_HOLDING_REGISTERS => Ok(self.read(data)?),
-            WRITE_HOLDING_REGISTERS => {
-                self.write(data)?;
-                Ok(Vec::new())
+        Ok((self.carry_out)(&mut self.values, service, data)?)
+    }
+}
+
+fn carry_out(values: &mut [u16], service: ServiceCode, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
+    let mut reader = Reader::new(data);
+    match service {
+        READ_HOLDING_REGISTERS => {
+            let registers = part(values, &mut reader)?;
+            reader.finish().map_err(|_| GeneralStatus::TooMuchData)?;
+            Ok(registers.iter().flat_map(|register| register.to_le_bytes()).collect())
+        }
+        WRITE_HOLDING_REGISTERS => {
+            let registers = part(values, &mut reader)?;
+            let given = reader.rest();
+            if given.len() < 2 * registers.len() {
+                return Err(GeneralStatus::NotEnoughData);
             }
-            _ => Err(GeneralStatus::ServiceNotSupported.into()),
+            if given.len() > 2 * registers.len() {
+                return Err(GeneralStatus::TooMuchData);
+            }
+            for (register, bytes) in registers.iter_mut().zip(given.as_chunks::<2>().0) {
+                *register = u16::from_le_bytes(*bytes);
+            }
+            Ok(Vec::new())
         }
+        _ => Err(GeneralStatus::ServiceNotSupported),
     }
+}
 
-    fn read(&mut self, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
-        let mut reader = Reader::new(data);
-        let registers = self.part(&mut reader)?;
-        reader.finish().map_err(|_| GeneralStatus::TooMuchData)?;
-        Ok(registers.iter().flat_map(|register| register.to_le_bytes()).collect())
-    }
-
-    fn write(&mut self, data: &[u8]) -> Result<(), GeneralStatus> {
-        let mut reader = Reader::new(data);
-        let registers = self.part(&mut reader)?;
-        let given = reader.rest();
-        if given.len() < 2 * registers.len() {
-            return Err(GeneralStatus::NotEnoughData);
-        }
-        if given.len() > 2 * registers.len() {
-            return Err(GeneralStatus::TooMuchData);
-        }
-        for (register, bytes) in registers.iter_mut().zip(given.as_chunks::<2>().0) {
-            *register = u16::from_le_bytes(*bytes);
-        }
-        Ok(())
-    }
-
-    /// The registers that a request is about.
-    fn part(&mut self, reader: &mut Reader<'_>) -> Result<&mut [u16], GeneralStatus> {
-        let mut next = || reader.u16().map_err(|_| GeneralStatus::NotEnoughData);
-        let (start, quantity) = (next()?, next()?);
-        let from = usize::from(start);
-        (1..=MAX_QUANTITY)
-            .contains(&quantity)
-            .then(|| self.0.get_mut(from..from + usize::from(quantity)))
-            .flatten()
-            .ok_or(GeneralStatus::InvalidParameter)
-    }
+/// The registers that a request is about.
+fn part<'a>(values: &'a mut [u16], reader: &mut Reader<'_>) -> Result<&'a mut [u16], GeneralStatus> {
+    let mut next = || reader.u16().map_err(|_| GeneralStatus::NotEnoughData);
+    let (start, quantity) = (usize::from(next()?), next()?);
+    (1..=MAX_QUANTITY)
+        .contains(&quantity)
+        .then(|| values.get_mut(start..start + usize::from(quantity)))
+        .flatten()
+        .ok_or(GeneralStatus::InvalidParameter)
 }

@@ -21,7 +21,7 @@ pub(super) struct Objects {
     pub(super) counts: ManagerCounts,
     output: [u8; ASSEMBLY_SIZE],
     parameters: Parameters,
-    registers: Registers,
+    pub(super) registers: Option<Registers>,
 }
 
 /// What a request can be about.
@@ -53,7 +53,7 @@ impl Objects {
             counts: ManagerCounts::default(),
             output: [0; ASSEMBLY_SIZE],
             parameters: Parameters::default(),
-            registers: Registers::default(),
+            registers: None,
         }
     }
 
@@ -77,7 +77,10 @@ impl Objects {
                 self.write(object, request.data)?;
                 Ok(Vec::new())
             }
-            (service, Object::Modbus) => self.registers.carry_out(service, request.data),
+            (service, Object::Modbus) => match &mut self.registers {
+                Some(registers) => registers.carry_out(service, request.data),
+                None => Err(GeneralStatus::PathDestinationUnknown.into()),
+            },
             _ => Err(GeneralStatus::ServiceNotSupported.into()),
         }
     }
@@ -124,7 +127,7 @@ impl Objects {
             (ClassCode::Assembly, INPUT_ASSEMBLY) => Object::Input,
             (ClassCode::Assembly, OUTPUT_ASSEMBLY) => Object::Output,
             (ClassCode::DpiParameter, number) if parameter::exists(number) => Object::Parameter(number),
-            (ClassCode::Modbus, 1) => Object::Modbus,
+            (ClassCode::Modbus, 1) if self.registers.is_some() => Object::Modbus,
             (ClassCode::TcpIpInterface, 1) => Object::TcpIp(self.module.ip.ok_or(unknown)?),
             (ClassCode::EthernetLink, 1) if self.module.ip.is_some() => Object::EthernetLink,
             _ => return Err(unknown),
@@ -135,10 +138,8 @@ impl Objects {
     /// The classes of which there are instances. Only what is on the Ethernet has objects of it.
     fn class(&self, class: ClassCode) -> Option<Class> {
         let (revision, max_instance, instances) = match class {
-            ClassCode::Identity
-            | ClassCode::MessageRouter
-            | ClassCode::ConnectionManager
-            | ClassCode::Modbus => (1, 1, 1),
+            ClassCode::Identity | ClassCode::MessageRouter | ClassCode::ConnectionManager => (1, 1, 1),
+            ClassCode::Modbus if self.registers.is_some() => (1, 1, 1),
             ClassCode::Assembly => (2, 150, 2),
             ClassCode::DpiParameter => (1, 43, 5),
             ClassCode::TcpIpInterface | ClassCode::EthernetLink if self.module.ip.is_some() => (1, 1, 1),

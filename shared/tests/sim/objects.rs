@@ -1,6 +1,6 @@
 //! The objects, asked without a session.
 
-use cipdeck_shared::sim::Device;
+use cipdeck_shared::sim::{Device, Registers, SimConfig};
 use hex_literal::hex;
 
 use super::frames::{MOVING, ask, at};
@@ -163,7 +163,8 @@ fn every_class_says_its_revision_and_its_instances() {
 
 #[test]
 fn holding_registers_are_read_and_written() {
-    let mut device = Device::default();
+    let registers = Some(Registers::default());
+    let mut device = Device::new(SimConfig { registers, ..SimConfig::default() });
     let read = hex!("4E 02 20 44 24 01 05 00 03 00");
     assert_eq!(ask(&mut device, &read, at(0)), (0, hex!("05 00 06 00 07 00").to_vec()));
     assert_eq!(ask(&mut device, &hex!("50 02 20 44 24 01 06 00 01 00 34 12"), at(0)), (0, vec![]));
@@ -183,4 +184,5 @@ fn holding_registers_are_read_and_written() {
         assert_eq!(ask(&mut device, request, at(0)).0, status, "{name}");
     }
     assert_eq!(ask(&mut device, &hex!("4E 02 20 44 24 01 00 00 7B 00"), at(0)).1.len(), 246);
+    assert_eq!(ask(&mut Device::default(), &read, at(0)).0, 0x05, "a device without any");
 }

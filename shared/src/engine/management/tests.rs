@@ -1,4 +1,3 @@
-use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec;
 
@@ -16,13 +15,13 @@ fn started(form: SendReqForm) -> BlockView {
         connected: false,
         received_words: 4,
     };
-    let words = Some(Box::new(Words::started(Arc::new(plan), 6)));
+    let words = Some(Arc::new(Words::started(Arc::new(plan), 6)));
     BlockView { input: true, phase: Phase::Sent, words, ..BlockView::default() }
 }
 
 fn ended(form: SendReqForm, cause: Option<Cause>, reply: &[u8]) -> Management {
     let mut view = started(form);
-    view.words.as_mut().unwrap().reply = reply.to_vec();
+    view.words = view.words.map(|words| Arc::new(words.answered(reply.to_vec())));
     view.phase = if cause.is_some() { Phase::Failed } else { Phase::Done };
     view.cause = cause;
     Management::of(&view).unwrap()
@@ -41,8 +40,8 @@ fn the_activity_bit_is_up_while_it_runs_and_the_length_changes_with_it() {
 
 #[test]
 fn exchange_numbers_go_round_without_0() {
-    let plan = match started(SendReqForm::DataExch).words.unwrap().start {
-        Ok(plan) => plan,
+    let plan = match &started(SendReqForm::DataExch).words.unwrap().start {
+        Ok(plan) => Arc::clone(plan),
         Err(report) => panic!("{report}"),
     };
     for (before, number) in [(0, 1), (1, 2), (254, 255), (255, 1)] {
@@ -62,7 +61,7 @@ fn a_refusal_of_the_device_is_a_correct_exchange_with_its_status_in_the_data() {
 
 #[test]
 fn a_start_that_is_refused_never_raises_the_activity_bit() {
-    let words = Some(Box::new(Words::refused(0x03, 6)));
+    let words = Some(Arc::new(Words::refused(0x03, 6)));
     let cause = Some(Cause::new(CauseKind::Invalid));
     let view = BlockView { input: true, phase: Phase::Waiting, words, cause, ..BlockView::default() };
     let refused = Management::of(&view).unwrap();
