@@ -67,7 +67,7 @@ use self::plant::Plant;
 use self::project::{FilesError, Folder};
 use self::runner::Guard;
 pub use self::settings::Settings;
-use self::store::{Store, StoredLists};
+use self::store::{Store, StoreError, StoredLists};
 
 /// How long viewers have to hear the end, and requests that are being answered after everything else has ended.
 const LAST_ANSWERS: Duration = Duration::from_secs(3);
@@ -196,7 +196,10 @@ async fn join(store: &Store, folder: &Path) -> Result<(), RunError> {
         tracing::warn!(file = finding.field, "project: {}", finding.message);
     }
     let version = read.version;
-    let outcome = store.join(opened, read).await.map_err(|error| wrong(&error))?;
+    let outcome = store.join(opened, read).await.map_err(|error| match error {
+        StoreError::Files(error) => wrong(&error),
+        error => RunError::Store(error.to_string()),
+    })?;
     for part in outcome.parts {
         if part.how != ProjectChange::Unchanged {
             tracing::info!(what = ?part.what, how = ?part.how, name = part.name, id = part.id, file = part.file, "project");

@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use cipdeck_shared::config::BlockConfig;
+use cipdeck_shared::config::{BlockConfig, project};
 use clap::Args;
 
 use super::Exit;
 use super::once::{Mode, execute};
 use super::remote::Remote;
-use crate::draft::Draft;
 
 /// A block from a file.
 #[derive(Debug, Args)]
@@ -33,9 +32,11 @@ impl Run {
 
 /// Reads a block; its id and revision do not matter here.
 pub(super) fn read(file: &Path) -> Result<BlockConfig, Exit> {
-    let name = file.display();
-    let text = std::fs::read(file).map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
-    let draft: Draft = serde_json::from_slice(&text)
-        .map_err(|error| Exit::usage(&format!("{name} is not a block: {error}")))?;
-    Ok(draft.config)
+    let name = file.display().to_string();
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
+    project::block(&name, &text).map_err(|errors| {
+        let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
+        Exit::usage(&format!("{name} is not a block:\n{}", lines.join("\n")))
+    })
 }

@@ -118,10 +118,11 @@ fn without_wrapping(files: BTreeMap<String, String>) -> BTreeMap<String, String>
     let Some(folder) = first.filter(|folder| files.contains_key(&format!("{folder}{PROJECT_HEAD}"))) else {
         return files;
     };
-    if !files.keys().all(|path| path.starts_with(&folder)) {
-        return files;
-    }
-    files.into_iter().map(|(path, text)| (path[folder.len()..].to_owned(), text)).collect()
+    let inside: Option<BTreeMap<_, _>> = files
+        .iter()
+        .map(|(path, text)| Some((path.strip_prefix(&folder)?.to_owned(), text.clone())))
+        .collect();
+    inside.unwrap_or(files)
 }
 
 #[cfg(test)]

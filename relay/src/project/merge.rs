@@ -223,10 +223,12 @@ impl Merge<'_> {
         };
         for rule in rules {
             for (wanted, found) in wanted.iter().zip(&mut matches).filter(|(_, found)| found.is_none()) {
-                let place = there.iter().zip(&free).position(|(there, free)| *free && rule(*wanted, *there));
-                if let Some(place) = place {
+                let mut places = there.iter().zip(&mut free).enumerate();
+                if let Some((place, (_, free))) =
+                    places.find(|(_, (there, free))| **free && rule(*wanted, **there))
+                {
                     *found = Some(place);
-                    free[place] = false;
+                    *free = false;
                 }
             }
         }

@@ -121,6 +121,35 @@ async fn links_are_neither_read_nor_written_through() {
 }
 
 #[tokio::test]
+async fn members_that_nobody_knows_survive_a_change_of_devices_groups_and_variables() {
+    let root = tempfile::tempdir().unwrap();
+    let at = |path: &str| root.path().join(path);
+    for folder in ["targets", "groups/nx"] {
+        fs::create_dir_all(at(folder)).unwrap();
+    }
+    fs::write(at("cipdeck.json"), r#"{"project": 1, "name": "x", "owner": "y"}"#).unwrap();
+    fs::write(at("targets/nx.json"), r#"{"rack": "7b", "name": "NX", "path": "0,0"}"#).unwrap();
+    let group = r#"{"shift": 2, "name": "line", "variables": [{"note": [1], "name": "a", "address": "a"}]}"#;
+    fs::write(at("groups/nx/line.json"), group).unwrap();
+    let (store, _) = joined(None, root.path()).await;
+    let stored = store.load_plant().await.unwrap();
+    let config = DeviceConfig::new("NX 2", "0,0");
+    store.put_device(Device { revision: 2, config, ..stored.devices[0].clone() }).await.unwrap();
+    let mut variable = stored.variables[0].clone();
+    variable.config.unit = "m".to_owned();
+    store.put_variable(variable).await.unwrap();
+    let written = read(Folder::open(root.path()).unwrap().files()).project;
+    let target = &written.targets["nx-2"];
+    let group = &target.groups["line"];
+    assert_eq!((&target.extra["rack"], &group.extra["shift"]), (&"7b".into(), &2.into()));
+    assert_eq!(group.variables[0].extra["note"], serde_json::json!([1]));
+    assert_eq!(
+        (written.head.extra["owner"].as_str(), group.variables[0].config.unit.as_str()),
+        (Some("y"), "m")
+    );
+}
+
+#[tokio::test]
 async fn ids_stay_with_their_files_and_names() {
     let (data, root) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let path = data.path().join("cipdeck.sqlite");

@@ -67,10 +67,13 @@ fn parents_first(parents: &[Option<usize>]) -> Vec<usize> {
     for place in 0..parents.len() {
         let mut chain = Vec::new();
         let mut next = Some(place);
-        while let Some(place) = next.filter(|place| !is_in[*place]) {
-            is_in[place] = true;
+        while let Some(place) = next {
+            match is_in.get_mut(place) {
+                Some(is_in) if !*is_in => *is_in = true,
+                _ => break,
+            }
             chain.push(place);
-            next = parents[place];
+            next = parents.get(place).copied().flatten();
         }
         order.extend(chain.into_iter().rev());
     }

@@ -133,8 +133,8 @@ pub(super) fn is_json(path: &str) -> bool {
 /// UTF-8, or where it ends to be.
 pub(super) fn text(bytes: Vec<u8>) -> Result<String, Position> {
     String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let good = String::from_utf8_lossy(good);
+        let good = error.as_bytes().get(..error.utf8_error().valid_up_to());
+        let good = String::from_utf8_lossy(good.unwrap_or_default());
         let line = good.matches('\n').count() + 1;
         let column = good.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
         Position { line, column }
