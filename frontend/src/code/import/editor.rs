@@ -113,31 +113,53 @@ fn in_sight(view: View, count: usize) -> Range<usize> {
 
 fn sheet(props: &CodeEditorProps, view: View) -> Html {
     let shown = in_sight(view, props.lines.count());
+    let above = i32::try_from(shown.start - 1).unwrap_or(i32::MAX / LINE).saturating_mul(LINE);
+    let down = above - view.top;
     let line = |number: usize| {
         let found = props.marks.binary_search_by_key(&number, |mark| mark.line).ok();
         let mark = found.and_then(|index| props.marks.get(index)).map(|mark| class(mark.severity));
-        let top = i32::try_from(number - 1).unwrap_or(i32::MAX / LINE) * LINE;
-        (mark, format!("top:{top}px"), number)
+        (mark, number)
     };
     let shown: Vec<_> = shown.map(line).collect();
-    let numbers = shown.iter().map(|(mark, style, number)| {
-        html! { <span key={*number} class={classes!("code-number", *mark)} style={style.clone()}>{ *number }</span> }
+    let numbers = shown.iter().map(|(mark, number)| {
+        html! { <div key={*number} class={classes!("code-number", *mark)}>{ *number }</div> }
     });
-    let lines = shown.iter().map(|(mark, style, number)| {
+    let lines = shown.iter().map(|(mark, number)| {
         html! {
-            <div key={*number} class={classes!("code-drawn", *mark)} style={style.clone()} data-line={number.to_string()}>
+            <div key={*number} class={classes!("code-drawn", *mark)} data-line={number.to_string()}>
                 { ink(&props.lines, *number) }
             </div>
         }
     });
     html! { <>
-        <div class="code-gutter" aria-hidden="true">
-            <div style={format!("transform:translateY({}px)", -view.top)}>{ for numbers }</div>
-        </div>
-        <div class="code-layer" aria-hidden="true">
-            <div style={format!("transform:translate({}px,{}px)", -view.left, -view.top)}>{ for lines }</div>
-        </div>
+        <Layer class="code-gutter" right={0} {down}>{ for numbers }</Layer>
+        <Layer class="code-layer" right={-view.left} {down}>{ for lines }</Layer>
     </> }
+}
+
+#[derive(Clone, PartialEq, Properties)]
+struct LayerProps {
+    class: &'static str,
+    /// px from where the field begins.
+    right: i32,
+    down: i32,
+    children: Html,
+}
+
+/// What moves with the field.
+#[component]
+fn Layer(props: &LayerProps) -> Html {
+    let node = use_node_ref();
+    use_effect_with((node.clone(), props.right, props.down), |(node, right, down)| {
+        if let Some(element) = node.cast::<HtmlElement>() {
+            // Through the object model: the content security policy allows no style attributes. Lengths in px are always
+            // accepted.
+            let _ = element.style().set_property("transform", &format!("translate({right}px, {down}px)"));
+        }
+    });
+    html! {
+        <div class={props.class} aria-hidden="true"><div ref={node}>{ props.children.clone() }</div></div>
+    }
 }
 
 const fn class(severity: Severity) -> &'static str {
