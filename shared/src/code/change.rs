@@ -1,11 +1,7 @@
 //! What a conversion changes, and why.
 
 use alloc::string::{String, ToString};
-use alloc::vec;
 use core::fmt;
-
-use super::Code;
-use crate::config::BlockConfig;
 
 /// One member that is not carried as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,8 +84,6 @@ pub enum Why {
     OursAlone,
     /// The block has errors, so that what it would send is not known.
     NotSendable,
-    /// The dialect is not written yet.
-    NotWritten,
 }
 
 impl Change {
@@ -164,7 +158,6 @@ impl Why {
             Self::ProgramDoes => "program_does",
             Self::OursAlone => "ours_alone",
             Self::NotSendable => "not_sendable",
-            Self::NotWritten => "not_written",
         }
     }
 }
@@ -204,13 +197,6 @@ impl fmt::Display for Why {
             Self::ProgramDoes => "the program around the block has to do it",
             Self::OursAlone => "it is a setting of cipdeck; a controller has nothing like it",
             Self::NotSendable => "the block has errors: correct them first",
-            Self::NotWritten => "cipdeck does not write this dialect yet",
         })
     }
-}
-
-/// For a dialect that is not written yet.
-pub(super) fn not_written(block: &BlockConfig) -> Code {
-    let change = Change::new(&"name", &block.name(), &"", Grade::Request, Why::NotWritten);
-    Code { text: String::new(), changes: vec![change] }
 }

@@ -1,12 +1,8 @@
 //! What an import has to say about a place in the text.
 
 use alloc::string::{String, ToString};
-use alloc::vec;
-use alloc::vec::Vec;
 use core::fmt;
 
-use super::Imported;
-use super::dialect::Dialect;
 use crate::plan::Severity;
 
 /// Characters of an excerpt; more are cut off with an ellipsis.
@@ -77,8 +73,6 @@ pub enum RemarkKind {
         /// Remarks that are left out.
         more: usize,
     },
-    /// This dialect is not read yet.
-    NotReadable(Dialect),
     /// Anything else, in words.
     Told(String),
 }
@@ -152,7 +146,6 @@ impl fmt::Display for RemarkKind {
                 write!(f, "a text has at most {limit} messages; those from here on were not read")
             }
             Self::TooManyRemarks { more } => write!(f, "and {more} more remarks, from here on"),
-            Self::NotReadable(dialect) => write!(f, "cipdeck does not read {} yet", dialect.title()),
             Self::Told(words) => f.write_str(words),
         }
     }
@@ -163,10 +156,4 @@ impl RemarkKind {
     pub fn told(words: &impl ToString) -> Self {
         Self::Told(words.to_string())
     }
-}
-
-/// For a dialect that is not read yet.
-pub(super) fn not_readable(dialect: Dialect, text: &str) -> Imported {
-    let remark = Remark::error(1, 1, text, RemarkKind::NotReadable(dialect));
-    Imported { blocks: Vec::new(), remarks: vec![remark] }
 }

@@ -27,6 +27,9 @@ pub(super) enum Look {
     Iec,
 }
 
+/// Statements of Python that have others below them.
+const PYTHON_BLOCKS: [&str; 8] = ["if ", "elif ", "else:", "for ", "while ", "try:", "except", "finally:"];
+
 /// What a line looks like, after one that looks like `before`.
 pub(super) fn look(line: &str, before: Option<Look>) -> Look {
     let indented = line.starts_with([' ', '\t']);
@@ -68,7 +71,8 @@ pub(super) fn look(line: &str, before: Option<Look>) -> Look {
         Some(Look::Python)
             if indented
                 || is_python_assignment(line)
-                || starts(&[")", "]", "}", "@", "assert ", "raise "]) =>
+                || starts(&[")", "]", "}", "@", "assert ", "raise "])
+                || line.ends_with(':') && starts(&PYTHON_BLOCKS) =>
         {
             return Look::Python;
         }

@@ -1,0 +1,224 @@
+//! Every dialect, as somebody uses it: a block goes out as code, loses all of its comments, and comes back.
+#![cfg(not(target_arch = "wasm32"))]
+
+#[path = "dialects/blocks.rs"]
+mod blocks;
+#[path = "dialects/comments.rs"]
+mod comments;
+
+use cipdeck_shared::code::{Code, Dialect, Found, Grade, Language, Options, export, import};
+use cipdeck_shared::config::{BlockConfig, MsgCipGeneric};
+use cipdeck_shared::plan::{MessagePlan, Severity};
+use proptest::prelude::*;
+
+use self::blocks::block;
+use self::comments::without_comments;
+
+/// What a block sends, where to, and how long it waits.
+#[derive(Clone, Debug, PartialEq)]
+struct Sends {
+    request: Vec<u8>,
+    target: String,
+    route: Vec<u8>,
+    ucmm_timeout_ms: u32,
+    connected_timeout_ms: Option<u32>,
+}
+
+fn sends(block: &BlockConfig) -> Option<Sends> {
+    let plan = MessagePlan::of(block).0?;
+    let path = block.as_msg().and_then(|config| config.target_cfg.path.parse().ok());
+    Some(Sends {
+        request: plan.bytes().to_vec(),
+        target: plan.target().to_string(),
+        route: path.map_or_else(Vec::new, |path: cipdeck_shared::config::TargetPath| path.route.bytes()),
+        ucmm_timeout_ms: plan.ucmm_timeout_ms(),
+        connected_timeout_ms: plan.connection().map(|connection| connection.timeout_ms),
+    })
+}
+
+/// The one block that a text without its comments gives, recognised or as this dialect.
+fn back(code: &Code, dialect: Dialect, asked: Option<Dialect>) -> Result<Found, String> {
+    let text = without_comments(dialect, &code.text);
+    let mut imported = import(&text, asked);
+    let errors = imported.remarks.iter().filter(|remark| remark.severity == Severity::Error);
+    let errors: Vec<String> = errors.map(ToString::to_string).collect();
+    match (imported.blocks.len(), errors.is_empty()) {
+        (1, true) => Ok(imported.blocks.remove(0)),
+        (blocks, _) => Err(format!("{blocks} blocks, {errors:?} in\n{text}")),
+    }
+}
+
+fn options(il: bool) -> Options {
+    Options { language: if il { Language::Il } else { Language::St } }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 192, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_a_dialect_says_comes_back(block in block(), il in any::<bool>(), told in any::<bool>()) {
+        let sent = sends(&block);
+        for dialect in Dialect::ALL {
+            let code = export(&block, dialect, &options(il));
+            let losses: Vec<String> = code.losses().map(ToString::to_string).collect();
+            let Some(sent) = &sent else {
+                prop_assert!(dialect == Dialect::Json || !losses.is_empty(), "{dialect}: an invalid block without a word");
+                continue;
+            };
+            let asked = told.then_some(dialect);
+            let found = match back(&code, dialect, asked) {
+                Ok(found) => found,
+                Err(why) => {
+                    // Nothing is written of what cannot be said, and that is told.
+                    let request = code.losses().any(|change| change.grade == Grade::Request);
+                    prop_assert!(request && code.text.trim().is_empty(), "{}: {} {:?}", dialect, why, losses);
+                    continue;
+                }
+            };
+            let again = sends(&found.config);
+            if losses.is_empty() {
+                prop_assert_eq!(again.as_ref(), Some(sent), "{}: {:?}\n{}", dialect, found.remarks, code.text);
+            }
+            let other = again.is_none_or(|again| {
+                again.request != sent.request || again.target != sent.target || again.route != sent.route
+            });
+            if other && dialect != Dialect::Hex {
+                let told = code.changes.iter().any(|change| change.grade == Grade::Request);
+                prop_assert!(told, "{}: other bytes or another device, and only {:?}\n{}", dialect, losses, code.text);
+            }
+        }
+    }
+}
+
+/// As it is typed by an engineer: a drive's ramp.
+fn ramp() -> BlockConfig {
+    let mut config = MsgCipGeneric::product_name("4,192.168.1.100");
+    config.name = "drive-ramp".into();
+    let app = &mut config.app_cfg;
+    (app.service, app.class, app.instance, app.attribute) = (16, 0x93, 41, 9);
+    (config.req_data, config.target_cfg.ucmm_timeout) = ("f401".into(), 2_500);
+    config.into()
+}
+
+/// `cargo test -p cipdeck-shared --test dialects table -- --nocapture`
+#[test]
+fn one_message_in_every_dialect_as_a_table() {
+    let block = ramp();
+    let sent = sends(&block).expect("a message");
+    println!("\n| dialect | bytes | target | timeouts | losses |\n| --- | --- | --- | --- | --- |");
+    for dialect in Dialect::ALL {
+        let languages: &[bool] = if dialect.kind() == cipdeck_shared::code::Kind::MsgCipGeneric {
+            &[false]
+        } else {
+            &[false, true]
+        };
+        for il in languages {
+            let code = export(&block, dialect, &options(*il));
+            let found = back(&code, dialect, None).unwrap_or_else(|why| panic!("{dialect}: {why}"));
+            let again = sends(&found.config).unwrap_or_else(|| panic!("{dialect}: {}", code.text));
+            let mark = |equal: bool| if equal { "equal" } else { "OTHER" };
+            let timeouts = again.ucmm_timeout_ms == sent.ucmm_timeout_ms
+                && again.connected_timeout_ms == sent.connected_timeout_ms;
+            let losses: Vec<String> =
+                code.losses().map(|loss| format!("{} ({})", loss.member, loss.grade.name())).collect();
+            println!(
+                "| {dialect}{} | {} | {} | {} | {} |",
+                if *il { " IL" } else { "" },
+                mark(again.request == sent.request),
+                mark(again.target == sent.target),
+                mark(timeouts),
+                if losses.is_empty() { "none".to_string() } else { losses.join(", ") }
+            );
+            assert_eq!(again.request, sent.request, "{dialect}");
+            if dialect != Dialect::Hex {
+                assert_eq!((again.target, timeouts), (sent.target.clone(), true), "{dialect}\n{}", code.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn twenty_messages_of_all_dialects_in_one_text() {
+    let mut text = String::new();
+    let mut expected = Vec::new();
+    for number in 0..20 {
+        let dialect = Dialect::ALL[number % Dialect::ALL.len()];
+        let BlockConfig::MsgCipGeneric(mut config) = ramp() else { unreachable!() };
+        config.name = format!("message{number}");
+        config.app_cfg.instance = 100 + i64::try_from(number).expect("small");
+        let block = BlockConfig::from(config);
+        text.push_str(&export(&block, dialect, &options(number % 2 == 1)).text);
+        text.push('\n');
+        expected.push(sends(&block).expect("a message").request);
+    }
+    let imported = import(&text, None);
+    let errors: Vec<String> = imported
+        .remarks
+        .iter()
+        .chain(imported.blocks.iter().flat_map(|found| &found.remarks))
+        .filter(|remark| remark.severity == Severity::Error)
+        .map(|remark| format!("{remark}\n{}", text.lines().nth(remark.line - 1).unwrap_or_default()))
+        .collect();
+    assert_eq!(errors, [""; 0]);
+    let found: Vec<Vec<u8>> =
+        imported.blocks.iter().map(|found| sends(&found.config).expect("a message").request).collect();
+    let dialects: Vec<Dialect> = imported.blocks.iter().map(|found| found.dialect).collect();
+    assert_eq!(found, expected, "{dialects:?}\n{text}");
+    let lines: Vec<usize> = imported.blocks.iter().map(|found| found.lines.start).collect();
+    assert!(lines.is_sorted(), "{lines:?}");
+}
+
+#[test]
+fn no_name_breaks_out_of_any_dialect() {
+    let names = [
+        "'; DROP TABLE blocks",
+        "*) x := 1; (*",
+        "]]></Comment>",
+        "</Tag><Tag Name=\"x\">",
+        "\"\"\"\nimport os\n\"\"\"",
+        "*/ fn main() {} /*",
+        "a\nb\r\nc",
+        "$(reboot)`reboot`",
+        "🦀 é ß",
+        "\\",
+        "--><!--",
+        "{}%s",
+    ];
+    for name in names {
+        let mut block = ramp();
+        block.set_name(name.into());
+        let sent = sends(&block).expect("a message");
+        for dialect in Dialect::ALL {
+            for il in [false, true] {
+                let code = export(&block, dialect, &options(il));
+                for text in [code.text.clone(), without_comments(dialect, &code.text)] {
+                    let imported = import(&text, Some(dialect));
+                    let requests: Vec<Vec<u8>> = imported
+                        .blocks
+                        .iter()
+                        .map(|found| sends(&found.config).expect("a message").request)
+                        .collect();
+                    assert_eq!(
+                        requests,
+                        [sent.request.clone()],
+                        "{dialect} {name:?}\n{text}\n{:?}",
+                        imported.remarks
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn comments_carry_nothing() {
+    for dialect in Dialect::ALL {
+        let code = export(&ramp(), dialect, &options(false));
+        let with = import(&code.text, Some(dialect));
+        let without = import(&without_comments(dialect, &code.text), Some(dialect));
+        let blocks = |imported: &cipdeck_shared::code::Imported| -> Vec<BlockConfig> {
+            imported.blocks.iter().map(|found| found.config.clone()).collect()
+        };
+        assert_eq!(blocks(&with), blocks(&without), "{dialect}");
+    }
+}
