@@ -25,7 +25,12 @@ pub(super) fn data_to_send(form: SendReqForm, bytes: &[u8], sent: usize) -> Node
 
 /// `Received_Data`: the reply to this request.
 pub(super) fn received(bytes: &[u8], request: &[u8]) -> Node {
-    dissect::reply(bytes, Some(request).filter(|request| !request.is_empty()))
+    let reply = dissect::reply(bytes, Some(request).filter(|request| !request.is_empty()));
+    if bytes.len().is_multiple_of(2) {
+        return reply;
+    }
+    let filling = leaf(bytes.len(), bytes.len() + 1, "not received", "fills the last word".to_owned());
+    parent(bytes.len() + 1, vec![reply, filling])
 }
 
 /// Message type and IP address, as far as they are there.

@@ -63,10 +63,10 @@ pub(super) fn ListPage() -> Html {
                 <table class="table words-table">
                     <thead><tr>
                         <th class="col-state">{ tr!("list.state") }</th>
-                        <th>{ tr!("field.name") }</th>
-                        <th>{ tr!("list.kind") }</th>
+                        <th class="col-name">{ tr!("field.name") }</th>
+                        <th class="col-kind">{ tr!("list.kind") }</th>
                         <th class="col-target">{ "Address" }</th>
-                        <th>{ tr!("list.report") }</th>
+                        <th class="col-report">{ tr!("list.report") }</th>
                         <th class="col-age">{ tr!("list.when") }</th>
                     </tr></thead>
                     <tbody>
@@ -109,9 +109,9 @@ fn Entry(props: &EntryProps) -> Html {
                     <span class="entry-draft">{ " " }{ tr!("list.unsaved") }</span>
                 }
             </td>
-            <td>{ form.to_string() }</td>
+            <td class="col-kind">{ form.to_string() }</td>
             <td class="col-target mono">{ &config.address }</td>
-            <td class={classes!("col-report", verdict.word())}>{ line(form, status) }</td>
+            <td class={classes!("col-report", format!("is-{}", verdict.word()))}>{ line(form, status) }</td>
             <td class="col-age">{ age.map_or_else(AttrValue::default, age_words) }</td>
         </tr>
     }

@@ -10,7 +10,7 @@ use yew::prelude::*;
 
 use super::{
     desk::Desk,
-    edit::{DataAs, Edit, read_ip},
+    edit::read_ip,
     hooks::{use_desk, use_link},
     i18n::tr,
     route::{self, Page, link},
@@ -131,10 +131,6 @@ fn begin(desk: &Desk, form: SendReqForm, preset: Option<Preset>, ip: [u8; 4]) {
         let address = Preset::ALL.first().map(|any| any.block(form, ip).address).unwrap_or_default();
         SendReq { address, ..SendReq::new(form, &tr!("list.new_name")) }
     };
-    let has_numbers = config.req_layout.contains("UINT");
     let id = desk.add(config);
-    if has_numbers {
-        desk.edit(id, Edit::DataAs(DataAs::Uint));
-    }
     route::go(Page::Block(id));
 }

@@ -57,7 +57,7 @@ async fn a_send_req_is_typed_as_words_and_runs_as_in_the_controller() {
     assert_eq!(report, "Exchange correct", "communication report 0 all the same");
     user.see("Last good value", PATIENCE).await;
     user.shot("refused").await;
-    user.click("All blocks").await;
+    user.click_at("//a[contains(@class, 'back')]", "All blocks").await;
     user.see("but the device refused: 16#05", PATIENCE).await;
     user.shot("list").await;
     user.close().await;
@@ -89,7 +89,7 @@ async fn the_other_forms_have_their_own_words_and_a_write_asks() {
     verdict(&user, "good", "Exchange correct, the device agreed: 24 bytes").await;
     user.shot("modbus-read").await;
 
-    user.click("All blocks").await;
+    user.click_at("//a[contains(@class, 'back')]", "All blocks").await;
     user.click("New block").await;
     user.click_part("form-data-exch").await;
     user.click_part("preset-modbus-write").await;
@@ -120,7 +120,7 @@ async fn what_is_typed_wrong_stays_and_is_said_where_it_is() {
         ("0000 030", "'030' at character 6"),
         ("0000 030E0", "'030E0' at character 6"),
         ("0000 03GE", "'03GE' at character 6"),
-        ("", "missing"),
+        ("", "must not be empty"),
     ] {
         user.fill("Data_to_Send", words).await;
         user.see(says, PATIENCE).await;

@@ -8,6 +8,7 @@ use yew::prelude::*;
 
 use super::{form::field_id, subject::Subject};
 use crate::{
+    editor::Remark,
     kit::TextField,
     words::{edit::Edit, i18n::tr},
 };
@@ -32,10 +33,13 @@ pub(super) fn address(subject: &Subject, edit: &Callback<Edit>) -> Html {
         Err(error) if !text.trim().is_empty() => marked(text, error.position),
         Err(_) => html! {},
     };
+    let has_errors = subject.remarks_of("Address").iter().any(Remark::is_error);
     html! { <>
         { field.draw() }
         { explained }
-        <p class="beside hint">{ tr!("address.example") }{ " " }<code>{ example(config.form()) }</code></p>
+        if has_errors {
+            <p class="beside hint">{ tr!("address.example") }{ " " }<code>{ example(config.form()) }</code></p>
+        }
     </> }
 }
 

@@ -19,7 +19,7 @@ pub(super) struct DataFormProps {
     pub(super) edit: Callback<Edit>,
 }
 
-/// Fields above, words below, every byte explained.
+/// Words above, each byte explained; the same as fields below.
 #[component]
 pub(super) fn DataForm(props: &DataFormProps) -> Html {
     let DataFormProps { subject, edit } = props;
@@ -31,6 +31,10 @@ pub(super) fn DataForm(props: &DataFormProps) -> Html {
         Fields::NoRequest(error) => Some(tr!("data.no_request", why = error)),
     };
     html! { <>
+        <div class="part-head"><h3>{ tr!("data.words") }</h3></div>
+        { waiting(subject, edit) }
+        <WordText text={draft.config.data_to_send.clone()} remarks={Rc::new(subject.remarks_of("Data_to_Send"))} edit={edit.clone()} />
+        { grid(subject) }
         <fieldset class="plain" disabled={why.is_some()}>
             <div class="part-head">
                 <h3>{ tr!("data.fields") }</h3>
@@ -41,10 +45,6 @@ pub(super) fn DataForm(props: &DataFormProps) -> Html {
             }
             { fields(subject, edit) }
         </fieldset>
-        <div class="part-head"><h3>{ tr!("data.words") }</h3></div>
-        { waiting(subject, edit) }
-        <WordText text={draft.config.data_to_send.clone()} remarks={Rc::new(subject.remarks_of("Data_to_Send"))} edit={edit.clone()} />
-        { grid(subject) }
     </> }
 }
 

@@ -37,15 +37,15 @@ pub(super) fn Form(props: &FormProps) -> Html {
                 <p class="hint" data-test="read-only-form">{ tr!("may.not_edit") }</p>
             }
             <fieldset class="plain" disabled={!subject.may_edit}>
-                { section("Address".into(), html! { <>
+                <section class="section">
                     { address(subject, edit) }
                     { other_remarks(subject) }
-                </> }) }
-                if is_data_exch {
-                    { section("Type".into(), number(subject, edit, Field::ExchangeType, exchange_words(config.exchange_type))) }
-                } else {
-                    { section("Request_Code".into(), number(subject, edit, Field::RequestCode, request_words(config.request_code))) }
-                }
+                    if is_data_exch {
+                        { number(subject, edit, Field::ExchangeType, exchange_words(config.exchange_type)) }
+                    } else {
+                        { number(subject, edit, Field::RequestCode, request_words(config.request_code)) }
+                    }
+                </section>
                 { section("Data_to_Send".into(), html! { <DataForm subject={subject.clone()} edit={edit.clone()} /> }) }
                 { section("Management_Param".into(), management(subject, edit)) }
                 { section("Received_Data".into(), number(subject, edit, Field::ReceivedDataSize, Some(tr!("form.words", bytes = 2 * size)))) }

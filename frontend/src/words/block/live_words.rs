@@ -73,8 +73,8 @@ fn byte(value: u16, meaning: Html) -> Html {
 fn named(what: AttrValue, entry: Option<Entry>, code: u8, bad: bool, test: &'static str) -> Html {
     let name = match (&entry, code) {
         (Some(entry), _) => AttrValue::from(entry.name),
-        // Whose time has not come, or which the other report makes void.
-        (None, 0 | MESSAGE_REFUSED) => AttrValue::default(),
+        (None, 0) => tr!("live.nothing"),
+        (None, MESSAGE_REFUSED) => AttrValue::default(),
         (None, _) => tr!("live.not_in_tables"),
     };
     html! { <>{ what }{ " " }<b class={classes!(bad.then_some("bad-text"))} data-test={test}>{ name }</b></> }

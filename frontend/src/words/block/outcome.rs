@@ -5,7 +5,6 @@ use std::rc::Rc;
 use cipdeck_shared::{
     api::{BlockStatus, WordsStatus},
     config::{SendReqForm, read_hex, words_of},
-    dissect,
     table::{self, Entry},
 };
 use yew::prelude::*;
@@ -40,20 +39,23 @@ pub(super) fn Outcome(props: &OutcomeProps) -> Html {
         return html! { <p class="quiet" data-test="verdict" data-verdict="never">{ tr!("verdict.never") }</p> };
     };
     html! { <>
-        <div class={classes!("verdict", verdict.word())} data-test="verdict" data-verdict={verdict.word()} role={matches!(verdict, Verdict::Refused(..) | Verdict::Failed).then_some("alert")}>
+        <div class={classes!("verdict", format!("is-{}", verdict.word()))} data-test="verdict" data-verdict={verdict.word()} role={matches!(verdict, Verdict::Refused(..) | Verdict::Failed).then_some("alert")}>
             <p class="verdict-line">
                 { verdict.shape().draw() }
                 <b>{ line(props.form, status) }</b>
-                if let (Verdict::Good | Verdict::Refused(..), Some(us)) = (verdict, status.reply_us) {
-                    <span class="count">{ tr!("outcome.reply_time", time = duration(us)) }</span>
-                }
             </p>
+            if let (Verdict::Good | Verdict::Refused(..), Some(us)) = (verdict, status.reply_us) {
+                <p class="quiet">{ tr!("outcome.reply_time", time = duration(us)) }</p>
+            }
             { why(props.form, status, words, verdict) }
         </div>
         if let Some((_, it)) = props.row.written.as_ref().filter(|(runs, _)| *runs == status.runs) {
             { written(it) }
         }
-        <Received words={words.clone()} request={AttrValue::from(status.request.clone())} good={verdict == Verdict::Good} />
+        <Received words={words.clone()} request={AttrValue::from(status.request.clone())} />
+        if let (Verdict::Good, Some(last)) = (verdict, &status.last) {
+            { decoded(&decode(last)) }
+        }
         { last(status, verdict) }
     </> }
 }
@@ -100,7 +102,6 @@ fn why(form: SendReqForm, status: &BlockStatus, words: &WordsStatus, verdict: Ve
 struct ReceivedProps {
     words: WordsStatus,
     request: AttrValue,
-    good: bool,
 }
 
 /// `Received_Data`: as words, and as what they say.
@@ -108,7 +109,6 @@ struct ReceivedProps {
 fn Received(props: &ReceivedProps) -> Html {
     let bytes = received(&props.words);
     let request = read_hex(&props.request).unwrap_or_default();
-    let values = if props.good { dissect::decode(&request, &bytes) } else { Vec::new() };
     html! {
         <section class="received">
             <h2>{ "Received_Data" }<span class="count">{ tr!("received.count", words = words_of(&bytes).len(), bytes = bytes.len()) }</span></h2>
@@ -119,9 +119,6 @@ fn Received(props: &ReceivedProps) -> Html {
                     label="Received_Data" words={Rc::<[u16]>::from(words_of(&bytes))}
                     tree={Rc::new(explain::received(&bytes, &request))} bytes={bytes.len()} test="received-words"
                 />
-                if props.good {
-                    { decoded(&values) }
-                }
             }
         </section>
     }

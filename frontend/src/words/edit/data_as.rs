@@ -47,6 +47,21 @@ impl DataAs {
         Self::ALL.into_iter().find(|it| it.word() == word)
     }
 
+    /// How data of a layout is shown at first: `start: UINT; quantity: UINT` as UINT.
+    pub fn of_layout(layout: &str) -> Self {
+        let type_of = |field: &str| {
+            let word = field.rsplit(':').next().unwrap_or_default();
+            Self::of_word(word.split('[').next().unwrap_or_default().trim()).unwrap_or_default()
+        };
+        let types: Vec<_> = layout.split(';').map(type_of).collect();
+        let are_words = types.iter().all(|it| matches!(it, Self::Uint | Self::Int));
+        match types.first() {
+            Some(first) if types.iter().all(|it| it == first) => *first,
+            _ if are_words => Self::Uint,
+            _ => Self::Bytes,
+        }
+    }
+
     const fn size(self) -> usize {
         match self {
             Self::Bytes | Self::Usint => 1,
@@ -158,6 +173,19 @@ mod tests {
         }
         assert_eq!(DataAs::Real.write(&[0, 0, 0x48, 0x41]).as_deref(), Some("12.5"));
         assert_eq!(DataAs::Real.read("12.5 -0").unwrap(), [0, 0, 0x48, 0x41, 0, 0, 0, 0x80]);
+    }
+
+    #[test]
+    fn a_layout_says_how_data_is_shown() {
+        for (layout, data_as) in [
+            ("start: UINT; quantity: UINT", DataAs::Uint),
+            ("start: UINT; quantity: UINT; register: INT[1]", DataAs::Uint),
+            ("REAL", DataAs::Real),
+            ("speed: REAL; run: BOOL", DataAs::Bytes),
+            ("", DataAs::Bytes),
+        ] {
+            assert_eq!(DataAs::of_layout(layout), data_as, "{layout}");
+        }
     }
 
     #[test]

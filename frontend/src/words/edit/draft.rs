@@ -85,12 +85,12 @@ impl Draft {
     pub fn new(config: SendReq, revision: Option<u64>) -> Self {
         let mut draft = Self {
             revision,
+            data_as: DataAs::of_layout(&config.req_layout),
             config,
             numbers: Shelf::default(),
             parts: Shelf::default(),
             auto_length: true,
             raw_path: false,
-            data_as: DataAs::Bytes,
             refused: Vec::new(),
         };
         draft.auto_length = draft.words().is_none_or(|words| lengths(&words).contains(&draft.length()));
