@@ -94,8 +94,9 @@ fn happened(block: &BlockStatus, cause: &Cause) -> Vec<String> {
 pub(super) fn entry(what: &str, entry: Option<Entry>) -> String {
     let Some(entry) = entry else { return format!("{what}: not in our tables.") };
     let parts = [entry.name, entry.meaning, entry.hint].into_iter().filter(|part| !part.is_empty());
-    let parts: Vec<_> = parts.map(|part| part.trim_end_matches('.')).collect();
-    format!("{what}: {}. ({})", parts.join(". "), entry.confidence.word())
+    let ended = |part: &str| if part.ends_with(['.', '?']) { part.to_owned() } else { format!("{part}.") };
+    let parts: Vec<_> = parts.map(ended).collect();
+    format!("{what}: {} ({})", parts.join(" "), entry.confidence.word())
 }
 
 #[cfg(test)]
