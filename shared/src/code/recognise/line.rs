@@ -21,6 +21,8 @@ pub(super) enum Look {
     Shell,
     /// Bytes.
     Hex,
+    /// Words of a SEND_REQ, alone or in a row of a table.
+    Words,
     /// A row of a table of parameters.
     Table,
     /// Structured Text or Instruction List, and whatever looks like nothing else.
@@ -79,11 +81,21 @@ pub(super) fn look(line: &str, before: Option<Look>) -> Look {
         Some(Look::Rust) if indented || starts(&["}", ")"]) => return Look::Rust,
         _ => {}
     }
+    if is_words(line) && !hex::is_request(line) {
+        return Look::Words;
+    }
     if hex::is_hex(line) {
         return Look::Hex;
     }
+    if parameters::is_rule(line) {
+        return Look::Nothing;
+    }
     if parameters::is_row(line) {
         return Look::Table;
+    }
+    // The head of a table: what it is of is seen in the next line.
+    if line.starts_with('|') {
+        return if matches!(before, Some(Look::Words | Look::Table)) { Look::Nothing } else { Look::Remark };
     }
     if is_python_assignment(line) && has(&["pycomm3", "bytes.fromhex(", "b'", "b\"", "bytes("]) {
         return Look::Python;
@@ -96,6 +108,24 @@ fn is_json(line: &str) -> bool {
     let Some(rest) = line.strip_prefix(['{', '[']) else { return false };
     let rest = rest.trim_start();
     rest.is_empty() || rest.starts_with(['"', '{', '}', ']'])
+}
+
+/// Groups of four hexadecimal digits: `0000 030E 0120`, `16#0000, 16#030E`; one alone in its line, or several in a cell.
+fn is_words(line: &str) -> bool {
+    let word = |group: &str| {
+        let digits = group.strip_prefix("16#").unwrap_or(group);
+        digits.len() == 4 && digits.chars().all(|c| c.is_ascii_hexdigit())
+    };
+    let cells = line.split(['|', '\t']).map(str::trim).filter(|cell| !cell.is_empty());
+    let alone = cells.clone().count() == 1;
+    cells.into_iter().any(|cell| {
+        let groups = cell.split([' ', ',', ';']).filter(|group| !group.is_empty());
+        let words = groups.clone().filter(|group| word(group)).count();
+        // The length may stand behind.
+        let length = groups.clone().last().is_some_and(|last| last.parse::<u16>().is_ok() && last.len() < 4);
+        let all = words + usize::from(length) == groups.count();
+        all && (words > 1 || words == 1 && alone && !length)
+    })
 }
 
 /// `cipdeck send …`, however it is called.

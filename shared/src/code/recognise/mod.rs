@@ -55,6 +55,8 @@ pub(super) fn pieces(text: &str, dialect: Option<Dialect>) -> Vec<Piece<'_>> {
             Look::Rust => pieces.push(piece(Form::Code(Dialect::Rust))),
             Look::Shell => pieces.push(piece(Form::Code(Dialect::Cli))),
             Look::Hex => pieces.push(piece(Form::Code(Dialect::Hex))),
+            // Which of the three it is, the words tell.
+            Look::Words => pieces.push(piece(Form::Code(Dialect::SendReqEtc100))),
             Look::Table => pieces.push(piece(Form::Parameters)),
             Look::Iec => {
                 let split = vendor::split(source).into_iter();
@@ -129,6 +131,10 @@ fn parts(text: &str) -> Vec<Part> {
         if let Some(last) = parts.last() {
             open.line(last.look, line);
         }
+    }
+    // What is no comment must not get lost.
+    if let Some(last) = waiting.filter(|last| text.get(last.bytes.clone()).is_some_and(|it| it.contains('|'))) {
+        parts.push(Part { look: Look::Iec, ..last });
     }
     parts
 }

@@ -34,7 +34,7 @@ impl Open {
             Look::Iec | Look::Python | Look::Rust => {
                 self.depth > 0 && !matches!(look(next, None), Look::Xml | Look::Json | Look::Shell)
             }
-            Look::Table | Look::Nothing | Look::Remark => false,
+            Look::Table | Look::Words | Look::Nothing | Look::Remark => false,
         }
     }
 
