@@ -27,17 +27,37 @@ fn errors(imported: &Imported) -> Vec<String> {
 
 #[test]
 fn twenty_messages_of_mixed_dialects_are_twenty_blocks_in_their_order() {
-    use Dialect::{Cli, CcwSt, DataExch, Hex, Json, L5x, Pycomm3, Rust, SendReqEtc100, SendReqEtc101, SysmacSt};
+    use Dialect::{
+        CcwSt, Cli, DataExch, Hex, Json, L5x, Pycomm3, Rust, SendReqEtc100, SendReqEtc101, SysmacSt,
+    };
     let order = [
-        CcwSt, SysmacSt, SendReqEtc100, Json, Hex, L5x, Cli, Pycomm3, Rust, DataExch, SendReqEtc101, Hex, CcwSt, Json,
-        SendReqEtc100, SysmacSt, Cli, L5x,
+        CcwSt,
+        SysmacSt,
+        SendReqEtc100,
+        Json,
+        Hex,
+        L5x,
+        Cli,
+        Pycomm3,
+        Rust,
+        DataExch,
+        SendReqEtc101,
+        Hex,
+        CcwSt,
+        Json,
+        SendReqEtc100,
+        SysmacSt,
+        Cli,
+        L5x,
     ];
     let mut text = String::new();
     for (number, dialect) in (1..).zip(order) {
         text.push_str(&export(&message(number).into(), dialect, &Options::default()).text);
         text.push('\n');
     }
-    text.push_str("Parâmetro\tValor\nServiço\t14\nClasse\t1\nInstância\t19\nAtributo\t7\nCaminho\t4,192.168.1.102\n\n");
+    text.push_str(
+        "Parâmetro\tValor\nServiço\t14\nClasse\t1\nInstância\t19\nAtributo\t7\nCaminho\t4,192.168.1.102\n\n",
+    );
     text.push_str("| Case | Words | Length |\n|---|---|---|\n| ETC 100 | 0000 030E 0120 1424 0730 | 10 |\n");
     let imported = import(&text, None);
     assert_eq!(errors(&imported), Vec::<String>::new(), "{text}");
@@ -51,7 +71,10 @@ fn twenty_messages_of_mixed_dialects_are_twenty_blocks_in_their_order() {
 #[test]
 fn a_text_that_is_too_long_is_not_read_and_one_with_too_many_messages_in_part() {
     let imported = import(&" ".repeat(MAX_TEXT + 1), None);
-    assert_eq!(imported.remarks[0].to_string(), "1:1: error: a text has at most 1048576 bytes; nothing of it was read");
+    assert_eq!(
+        imported.remarks[0].to_string(),
+        "1:1: error: a text has at most 1048576 bytes; nothing of it was read"
+    );
     let imported = import(&"0E 03 20 01 24 01 30 07\n".repeat(MAX_BLOCKS + 5), None);
     assert_eq!(imported.blocks.len(), MAX_BLOCKS);
     assert_eq!(imported.remarks[0].line, MAX_BLOCKS + 1);
@@ -62,7 +85,22 @@ fn a_text_that_is_too_long_is_not_read_and_one_with_too_many_messages_in_part() 
 
 #[test]
 fn a_mebibyte_of_brackets_is_refused_in_time() {
-    for unit in ["(", "[\n", "{\n", "<a>\n", "f(", "a := (", "0E 03\n", "IF a THEN\n", "Service\t1\n", "cipdeck send \\\n", "a[", "a : ARRAY[0..1] OF ", "a := 1;\n", "m(a,b,c,d,e,f,g);\n"] {
+    for unit in [
+        "(",
+        "[\n",
+        "{\n",
+        "<a>\n",
+        "f(",
+        "a := (",
+        "0E 03\n",
+        "IF a THEN\n",
+        "Service\t1\n",
+        "cipdeck send \\\n",
+        "a[",
+        "a : ARRAY[0..1] OF ",
+        "a := 1;\n",
+        "m(a,b,c,d,e,f,g);\n",
+    ] {
         let text = unit.repeat((1 << 16) / unit.len());
         let _ = import(&text, None);
         for dialect in Dialect::ALL {
@@ -80,10 +118,66 @@ mod properties {
     /// Parts of texts that mean something somewhere.
     fn part() -> impl Strategy<Value = String> {
         let known = proptest::sample::select(alloc::vec![
-            "m1(", "IN := TRUE", "AppCfg := a", ")", ";", "\n", "(*", "*)", "//", "'", "\"", "$", "VAR", "END_VAR", ": MSG_CIPGENERIC", "a.Service := 14",
-            "a.Class := 16#", "ARRAY[0..4] OF INT", ":=", "[", "]", "2(0)", "SEND_REQ(", "ADDR('0.2.0.10.0.0.1')", "%MW10:5", "16#030E", "LD ", "CIPUCMMSend(",
-            "RoutePath := '02\\10.0.0.1'", "RqPath := p", "<Tag", "<![CDATA[", "<?xml", "</", "/>", "&amp;", "{\"name\":", "[{", "}", "0E 03 20 01", "0000  0e 03", "\t", "|", "Serviço\t14",
-            "cipdeck send 4,1.2.3.4", "--class", "with CIPDriver('", "generic_message(", "service=0x0E,", "let ", "use rseip", "EPath::", ".await", "IF", "THEN", "CASE", "OF", "ü", "\u{feff}", "\r\n",
+            "m1(",
+            "IN := TRUE",
+            "AppCfg := a",
+            ")",
+            ";",
+            "\n",
+            "(*",
+            "*)",
+            "//",
+            "'",
+            "\"",
+            "$",
+            "VAR",
+            "END_VAR",
+            ": MSG_CIPGENERIC",
+            "a.Service := 14",
+            "a.Class := 16#",
+            "ARRAY[0..4] OF INT",
+            ":=",
+            "[",
+            "]",
+            "2(0)",
+            "SEND_REQ(",
+            "ADDR('0.2.0.10.0.0.1')",
+            "%MW10:5",
+            "16#030E",
+            "LD ",
+            "CIPUCMMSend(",
+            "RoutePath := '02\\10.0.0.1'",
+            "RqPath := p",
+            "<Tag",
+            "<![CDATA[",
+            "<?xml",
+            "</",
+            "/>",
+            "&amp;",
+            "{\"name\":",
+            "[{",
+            "}",
+            "0E 03 20 01",
+            "0000  0e 03",
+            "\t",
+            "|",
+            "Serviço\t14",
+            "cipdeck send 4,1.2.3.4",
+            "--class",
+            "with CIPDriver('",
+            "generic_message(",
+            "service=0x0E,",
+            "let ",
+            "use rseip",
+            "EPath::",
+            ".await",
+            "IF",
+            "THEN",
+            "CASE",
+            "OF",
+            "ü",
+            "\u{feff}",
+            "\r\n",
         ]);
         prop_oneof![4 => known.prop_map(String::from), 1 => ".{0,6}", 1 => "[0-9]{1,4}"]
     }
@@ -116,6 +210,7 @@ mod properties {
         fn no_name_breaks_out_of_a_text(name in ".{0,40}") {
             let mut config = message(1);
             config.name = name;
+            prop_assume!(MessagePlan::parse(&config).0.is_some());
             for dialect in Dialect::ALL {
                 let code = export(&config.clone().into(), dialect, &Options::default());
                 let imported = import(&code.text, Some(dialect));

@@ -33,11 +33,9 @@ mod token;
 #[cfg(test)]
 mod tests;
 
-pub(super) use self::literal::{Literal, quoted, read_literal};
-pub(super) use self::memory::{Cell, Memory};
-pub(super) use self::reading::{Reading, declared, left_over, lower_bound, roots};
+pub(super) use self::literal::{Literal, quoted};
+pub(super) use self::memory::Memory;
+pub(super) use self::reading::{Reading, left_over, roots};
 pub(super) use self::script::{Item, Script};
-pub(super) use self::syntax::{
-    Argument, Call, Declaration, Declared, Expression, Reference, Statement, Step,
-};
-pub(super) use self::token::{Lexeme, Place, Token, tokens};
+pub(super) use self::syntax::{Call, Declaration, Declared, Expression, Reference, Statement, Step};
+pub(super) use self::token::{Lexeme, Place, tokens};
