@@ -29,9 +29,6 @@ pub(super) enum Look {
     Iec,
 }
 
-/// Statements of Python that have others below them.
-const PYTHON_BLOCKS: [&str; 8] = ["if ", "elif ", "else:", "for ", "while ", "try:", "except", "finally:"];
-
 /// What a line looks like, after one that looks like `before`.
 pub(super) fn look(line: &str, before: Option<Look>) -> Look {
     let indented = line.starts_with([' ', '\t']);
@@ -70,14 +67,7 @@ pub(super) fn look(line: &str, before: Option<Look>) -> Look {
     }
     match before {
         // Inside of a block, and statements beside it.
-        Some(Look::Python)
-            if indented
-                || is_python_assignment(line)
-                || starts(&[")", "]", "}", "@", "assert ", "raise "])
-                || line.ends_with(':') && starts(&PYTHON_BLOCKS) =>
-        {
-            return Look::Python;
-        }
+        Some(Look::Python) if indented || is_python_statement(line) => return Look::Python,
         Some(Look::Rust) if indented || starts(&["}", ")"]) => return Look::Rust,
         _ => {}
     }
@@ -135,6 +125,16 @@ fn is_shell(line: &str) -> bool {
     let command = words.next().unwrap_or_default();
     let program = command.rsplit(['/', '\\']).next().unwrap_or_default();
     matches!(program, "cipdeck" | "cipdeck.exe")
+}
+
+/// What may follow in a program that is Python so far.
+fn is_python_statement(line: &str) -> bool {
+    const WORDS: [&str; 14] = [
+        "if ", "elif ", "else:", "for ", "while ", "try:", "except", "finally:", "raise ", "return",
+        "assert ", "@", ")", "]",
+    ];
+    let begins = WORDS.iter().any(|word| line.starts_with(word)) || line.starts_with('}');
+    is_python_assignment(line) || begins && !line.contains(":=") && !line.ends_with(';')
 }
 
 /// `reply = …`, but neither `:=` nor `==`.
