@@ -112,7 +112,8 @@ fn is_words(line: &str) -> bool {
         let groups = cell.split([' ', ',', ';']).filter(|group| !group.is_empty());
         let words = groups.clone().filter(|group| word(group)).count();
         // The length may stand behind.
-        let length = groups.clone().last().is_some_and(|last| last.parse::<u16>().is_ok() && last.len() < 4);
+        let length =
+            groups.clone().next_back().is_some_and(|last| last.parse::<u16>().is_ok() && last.len() < 4);
         let all = words + usize::from(length) == groups.count();
         all && (words > 1 || words == 1 && alone && !length)
     })

@@ -15,7 +15,7 @@
 //! for (index, item) in script.items.iter().enumerate() {
 //!     if let Statement::Call(call) = &item.statement && call.is("SEND_REQ") {
 //!         let words = call.argument(2, "Data_to_Send").and_then(|argument| argument.value.as_ref()?.reference());
-//!         let third = memory.integer("tab_gest[2]"); // as assigned before this call, or initially
+//!         let third = memory.value("tab_gest[2]"); // as assigned before this call, or initially
 //!     }
 //!     memory.step(index, item);
 //! }
