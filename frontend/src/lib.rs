@@ -13,7 +13,7 @@
 //! | [`office`] | the second document: users, lists, audit, history |
 //! | [`devices`] | the third document: devices, groups, variables, their live values |
 //! | [`words`] | the fourth: blocks in Control Expert's terms, SEND_REQ and DATA_EXCH |
-//! | [`code`] | the fifth: messages as code of controllers, and back; projects |
+//! | [`code`] | the fifth and the sixth: code of controllers becomes blocks, projects; a block becomes code |
 
 pub mod access;
 pub mod address;
@@ -61,10 +61,16 @@ pub fn start_words() {
     yew::Renderer::<words::Words>::new().render();
 }
 
-/// Puts the page of code into the document's body.
+/// Puts the pages that read code into the document's body.
 pub fn start_code() {
     say_crashes();
-    yew::Renderer::<code::CodePages>::new().render();
+    yew::Renderer::<code::CodeIn>::new().render();
+}
+
+/// Puts the pages that write code, and projects, into the document's body.
+pub fn start_take() {
+    say_crashes();
+    yew::Renderer::<code::CodeOut>::new().render();
 }
 
 fn say_crashes() {

@@ -27,7 +27,7 @@ pub(crate) struct Document {
 }
 
 /// All documents.
-pub(crate) const DOCUMENTS: [Document; 5] = [
+pub(crate) const DOCUMENTS: [Document; 6] = [
     Document {
         name: "page",
         binary: "cipdeck-page",
@@ -56,6 +56,12 @@ pub(crate) const DOCUMENTS: [Document; 5] = [
         name: "code",
         binary: "cipdeck-code",
         index: "code.html",
+        styles: &["tokens", "base", "kit", "access", "document", "office", "code"],
+    },
+    Document {
+        name: "take",
+        binary: "cipdeck-take",
+        index: "take.html",
         styles: &["tokens", "base", "kit", "access", "document", "office", "code"],
     },
 ];
@@ -244,7 +250,7 @@ mod tests {
     fn assembled(boot: &str, wasm: &[u8]) -> Result<Files> {
         let mut files = Files::new();
         for (document, wasm) in
-            DOCUMENTS.into_iter().zip([wasm, b"office", b"plants", b"send_req", b"export"])
+            DOCUMENTS.into_iter().zip([wasm, b"office", b"plants", b"send_req", b"import", b"export"])
         {
             let bound = Bound {
                 wasm: wasm.to_vec(),
@@ -267,7 +273,7 @@ mod tests {
         let files = assembled(BOOT, b"\0asm").unwrap();
         let indices = DOCUMENTS.map(|document| index(&files, &document));
         let named: Vec<_> = files.keys().filter(|name| !name.ends_with("html")).collect();
-        assert_eq!(named.len(), 21, "one icon for all: {named:?}");
+        assert_eq!(named.len(), 25, "one icon for all: {named:?}");
         for name in named {
             let quoted = format!("\"/{name}\"");
             assert!(indices.iter().any(|index| index.contains(&quoted)), "{name} is in no document");
@@ -295,7 +301,7 @@ mod tests {
         assert!(changed.iter().all(|name| name.starts_with("boot") || name.ends_with("wasm")), "{changed:?}");
         assert_eq!(changed.len(), 2);
         let are_equal = DOCUMENTS.map(|document| index(&one, &document) == index(&two, &document));
-        assert_eq!(are_equal, [false, true, true, true, true]);
+        assert_eq!(are_equal, [false, true, true, true, true, true]);
     }
 
     #[test]
@@ -304,7 +310,7 @@ mod tests {
         let before = files.len();
         zip(&mut files).unwrap();
         let zipped: Vec<_> = files.iter().filter(|(name, _)| name.ends_with("gz")).collect();
-        assert_eq!(zipped.len(), before - 6, "all but the documents and the icon");
+        assert_eq!(zipped.len(), before - 7, "all but the documents and the icon");
         assert!(zipped.iter().all(|(_, content)| content.starts_with(&[0x1F, 0x8B])));
     }
 

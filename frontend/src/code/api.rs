@@ -2,15 +2,25 @@
 
 use cipdeck_shared::{
     api::ProjectImport,
-    config::{Block, BlockConfig},
+    config::{BlockConfig, BlockId},
 };
 use gloo_net::http::Method;
 use js_sys::Uint8Array;
+use serde::Deserialize;
 
 use crate::net::rest::{self, Answered};
 
+/// What is needed of a stored block. Reading all of it would be 4 kB of the document.
+#[derive(Debug, PartialEq, Deserialize)]
+pub(super) struct Stored {
+    /// Given by the relay.
+    pub(super) id: BlockId,
+    /// What people call it.
+    pub(super) name: String,
+}
+
 /// One more block.
-pub(super) async fn save(config: &BlockConfig) -> Answered<Block> {
+pub(super) async fn save(config: &BlockConfig) -> Answered<Stored> {
     rest::parse(&rest::ask(Method::POST, "blocks", Some(rest::json(config)?)).await?)
 }
 

@@ -124,4 +124,19 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_comment_over_two_lines_is_one_on_both() {
+        let lines = Lines::in_one(&TEXT.into(), Dialect::CcwSt);
+        assert_eq!(lines.parts(1).last(), Some(&(Some(Ink::Comment), "(* one")));
+        assert_eq!(lines.parts(2), [(Some(Ink::Comment), "two *)")]);
+    }
+
+    #[test]
+    fn only_the_lines_of_a_part_are_coloured() {
+        let text: Rc<str> = "(* a *)\n(* b *)\n(* c *)".into();
+        let lines = Lines::of(&text, &[(2..3, Dialect::CcwSt)]);
+        let coloured = |line| lines.parts(line).iter().any(|(ink, _)| ink.is_some());
+        assert_eq!([coloured(1), coloured(2), coloured(3)], [false, true, false]);
+    }
 }

@@ -32,6 +32,11 @@ impl Page {
         }
     }
 
+    /// Whether it is of the document that writes code.
+    pub const fn is_out(self) -> bool {
+        matches!(self, Self::Export(_) | Self::Project)
+    }
+
     /// The path of a page.
     pub fn path(self) -> String {
         match self {

@@ -2,6 +2,7 @@
 
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, Uri, header};
 use axum::response::{Html, IntoResponse, Response};
+use cipdeck_shared::config::BlockId;
 use rust_embed::RustEmbed;
 
 use crate::error::ApiError;
@@ -34,12 +35,16 @@ pub(crate) async fn show(method: Method, uri: Uri, headers: HeaderMap) -> Respon
 
 /// The document of an address, if it is not that of a file: one of those with an address of their own, or the workbench.
 fn document(path: &str) -> Option<&'static str> {
+    let path = path.trim_end_matches('/');
     let (first, last) = (path.split('/').next(), path.rsplit('/').next());
     match (first, last) {
         (_, Some(name)) if name.contains('.') => None,
         (Some("office"), _) => Some("office.html"),
         (Some("devices"), _) => Some("devices.html"),
         (Some("words"), _) => Some("words.html"),
+        (Some("code"), Some(last)) if last == "project" || last.parse::<BlockId>().is_ok() => {
+            Some("take.html")
+        }
         (Some("code"), _) => Some("code.html"),
         _ => Some("index.html"),
     }
@@ -107,7 +112,10 @@ mod tests {
         for path in ["words", "words/", "words/new", "words/b7"] {
             assert_eq!(document(path), Some("words.html"), "{path}");
         }
-        for path in ["code", "code/", "code/b7", "code/project"] {
+        for path in ["code/b7", "code/b7/", "code/project"] {
+            assert_eq!(document(path), Some("take.html"), "{path}");
+        }
+        for path in ["code", "code/", "code/b", "code/projects"] {
             assert_eq!(document(path), Some("code.html"), "{path}");
         }
         for path in ["icon.svg", "office/page.js", "snippets/gloo-0123/inline0.js"] {

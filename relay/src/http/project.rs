@@ -4,7 +4,7 @@ use axum::Json as Answer;
 use axum::extract::{Query, State};
 use axum::http::{Uri, header};
 use axum::response::IntoResponse;
-use cipdeck_shared::api::ProjectImport;
+use cipdeck_shared::api::{ProjectFolder, ProjectImport};
 
 use super::caller::Caller;
 use super::extract::Archive;
@@ -32,6 +32,18 @@ pub(super) async fn export(State(app): State<App>) -> Result<impl IntoResponse, 
         (header::CONTENT_DISPOSITION, "attachment; filename=\"cipdeck-project.zip\""),
     ];
     Ok((headers, packed))
+}
+
+/// The folder that the relay keeps as a project, if it keeps one.
+#[utoipa::path(
+    get,
+    path = "/project/folder",
+    tag = "project",
+    responses((status = 200, description = "The folder, as the relay's machine names it", body = ProjectFolder))
+)]
+pub(super) async fn folder(State(app): State<App>) -> Answer<ProjectFolder> {
+    let folder = app.settings.project.as_ref().map(|folder| folder.display().to_string());
+    Answer(ProjectFolder { folder })
 }
 
 /// Takes in such an archive: what has the same name is replaced, what is new is created, everything else stays. All of

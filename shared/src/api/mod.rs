@@ -35,7 +35,7 @@ pub use self::live::{
     DeviceHealth, DeviceIdentity, DeviceLoad, DeviceStatus, HealthState, LIVE_PROTOCOL, LiveClientMessage,
     LiveServerMessage, Quality, VariableValue,
 };
-pub use self::project::{ProjectChange, ProjectImport, ProjectPart, ProjectPartKind};
+pub use self::project::{ProjectChange, ProjectFolder, ProjectImport, ProjectPart, ProjectPartKind};
 pub use self::rest::{
     Answer, Checked, ExchangeView, Finding, Health, InRequest, Problem, ProblemCode, Ready, RunRequest,
     findings,

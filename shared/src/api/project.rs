@@ -23,6 +23,15 @@ pub struct ProjectImport {
     pub ignored: Vec<String>,
 }
 
+/// `GET /api/v1/project/folder`: what `serve --project` was given.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct ProjectFolder {
+    /// Where each change is written as files, as the relay's machine names it; absent: nowhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folder: Option<String>,
+}
+
 /// A block, a target or a group, and what becomes of it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]

@@ -23,6 +23,7 @@ mod ink;
 mod json;
 mod l5x;
 mod message;
+#[allow(dead_code, reason = "the dialects will")]
 mod name;
 mod parameters;
 mod program;
@@ -31,6 +32,7 @@ mod recognise;
 mod remark;
 mod rust;
 mod sysmac_st;
+#[allow(dead_code, unused_imports, reason = "the dialects will")]
 mod text;
 
 use alloc::string::String;
@@ -171,6 +173,3 @@ fn read(form: recognise::Form, text: &str) -> Imported {
         },
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use cipdeck_relay::Settings;
 use cipdeck_tests::PATIENCE;
 use cipdeck_tests::block::{self, with};
 use cipdeck_tests::browser::{Browser, Journey, part};
@@ -83,7 +84,8 @@ async fn the_requests_of_schneiders_modules_become_blocks_and_give_the_same_word
         user.see("1 block", PATIENCE).await;
         assert_eq!(user.find("the kind", &part("kind"), PATIENCE).await, request.kind, "{}", request.words);
         paste(&user, &request.section()).await;
-        user.gone("the block of words", &part("look-at")).await;
+        let lines = request.section().lines().count();
+        user.see(&format!("lines 1–{lines}"), PATIENCE).await;
         assert_eq!(user.find("the kind", &part("kind"), PATIENCE).await, request.kind);
         user.shot(&format!("section-{number}")).await;
         fill_name(&user, &format!("request-{number}")).await;
@@ -110,7 +112,7 @@ async fn the_requests_of_schneiders_modules_become_blocks_and_give_the_same_word
 #[tokio::test]
 async fn a_mixed_text_becomes_blocks_and_each_line_of_rubbish_is_shown_at_its_place() {
     let relay = Relay::start().await;
-    let name = "drive-name";
+    let name = "drive_name";
     let drive = relay.rest.create(&with(block::product_name("4,192.168.1.100"), "/name", name)).await;
     let journey = Journey::start("code_mixed").await;
     let mut user = journey.open("user", &page(&relay, &format!("/{drive}?as=ccw-st"))).await;
@@ -157,7 +159,7 @@ async fn a_block_is_taken_home_in_every_dialect() {
     let relay = Relay::start().await;
     let write = with(block::product_name("4,192.168.1.100"), "/name", "speed *) --> reference");
     let write = with(write, "/AppCfg", json!({ "Service": 16, "Class": 4, "Instance": 150, "Attribute": 3 }));
-    let write = with(write, "/ReqData", "dc050000".into());
+    let write = with(write, "/ReqData", "dc050000");
     let id = relay.rest.create(&write).await;
     let journey = Journey::start("code_out").await;
     let mut user = journey.open("user", &page(&relay, &format!("/{id}"))).await;
@@ -194,7 +196,7 @@ const DIALECTS: [&str; 11] = [
 #[tokio::test]
 async fn what_l5x_cannot_say_is_said_loudly() {
     let relay = Relay::start().await;
-    let members = with(block::product_name("4,192.168.1.100"), "/AppCfg/MemberCnt", 2.into());
+    let members = with(block::product_name("4,192.168.1.100"), "/AppCfg/MemberCnt", 2);
     let members = with(members, "/AppCfg/MemberId", json!([1, 300, 0]));
     let id = relay.rest.create(&members).await;
     let journey = Journey::start("code_loud").await;
@@ -276,6 +278,60 @@ async fn a_conversion_that_changes_the_device_has_to_be_confirmed() {
     save_another(&mut user).await;
     user.shot("confirmed").await;
     user.close().await;
+}
+
+#[tokio::test]
+async fn a_project_goes_from_one_relay_to_another() {
+    let folder = TempDir::new().expect("a folder");
+    let project = folder.path().join("plant");
+    std::fs::create_dir(&project).expect("a folder for the project");
+    let kept = project.clone();
+    let data = TempDir::new().expect("a folder");
+    let here = Relay::start_with(data, |settings| Settings { project: Some(kept), ..settings }).await;
+    here.rest.create(&with(block::product_name("4,192.168.1.100"), "/name", "drive name")).await;
+    here.rest.create(&block::get("0,0", 1, 1, 6)).await;
+    assert!(project.join("blocks").join("drive-name.json").is_file(), "it is written at once");
+    let journey = Journey::start("code_project").await;
+    let mut user = journey.open("user", &page(&here, "/project")).await;
+    let said = user.find("which folder", &part("served"), PATIENCE).await;
+    assert!(said.contains(&project.display().to_string()), "{said}");
+    user.shot("served").await;
+    let link = user.script("return document.querySelector('[data-test=project-down]').href").await;
+    let zip = reqwest::get(link.as_str().expect("an address")).await.expect("an answer");
+    let zip = zip.error_for_status().expect("a project").bytes().await.expect("a body");
+    let zip = written(folder.path(), "plant.zip", &zip);
+
+    let there = Relay::start().await;
+    let old = with(block::get("0,0", 1, 1, 5), "/name", "get-1-1-6");
+    there.rest.create(&old).await;
+    user.go(&page(&there, "/project")).await;
+    user.see("The relay serves no folder", PATIENCE).await;
+    let text = written(folder.path(), "plant.txt", b"no zip");
+    choose(&user, "project-file", &[text]).await;
+    user.find("that it is no zip", &part("no-zip"), PATIENCE).await;
+    choose(&user, "project-file", std::slice::from_ref(&zip)).await;
+    user.see("1 to create, 1 to change, 0 left as they are, 0 wrong", PATIENCE).await;
+    assert_eq!(names(&there).await, ["get-1-1-6"], "only looked at");
+    fits(&mut user, "preview").await;
+    looks(&mut user, "preview").await;
+    user.click_part("project-do").await;
+    user.find("that it is done", &part("project-done"), PATIENCE).await;
+    user.shot("done").await;
+    assert_eq!(names(&there).await, ["drive name", "get-1-1-6"]);
+    choose(&user, "project-file", &[zip]).await;
+    user.see("Nothing would change.", PATIENCE).await;
+    assert!(!user.can_use("project-do").await);
+    user.shot("again").await;
+    user.close().await;
+}
+
+/// Of all blocks, sorted.
+async fn names(relay: &Relay) -> Vec<String> {
+    let blocks = relay.rest.get("blocks").await.body;
+    let names = blocks.as_array().into_iter().flatten().filter_map(|block| block["name"].as_str());
+    let mut names: Vec<_> = names.map(str::to_owned).collect();
+    names.sort();
+    names
 }
 
 #[tokio::test]

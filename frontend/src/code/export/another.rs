@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, rc::Rc};
 use cipdeck_shared::{
     api::Role,
     code::{Change, Converted, Grade, Kind, convert},
-    config::{Block, BlockConfig},
+    config::{Block, BlockConfig, BlockId},
     plan::MessagePlan,
 };
 use web_sys::HtmlInputElement;
@@ -75,7 +75,7 @@ fn Becoming(props: &BecomingProps) -> Html {
         tr!("another.name_as", name = props.block.config.name(), kind = short(props.kind)).to_string()
     });
     let seen = use_state(BTreeSet::<usize>::new);
-    let made = use_state(|| None::<Rc<Block>>);
+    let made = use_state(|| None::<BlockId>);
     let converted = use_memo(props.clone(), |props| convert(&props.block.config, props.kind));
     let (before, _) = MessagePlan::check(&props.block.config);
     let config = named(&converted, &name);
@@ -91,8 +91,7 @@ fn Becoming(props: &BecomingProps) -> Html {
             event.prevent_default();
             if can {
                 let (made, config) = (made.clone(), config.clone());
-                action
-                    .go(async move { api::save(&config).await }, move |block| made.set(Some(Rc::new(block))));
+                action.go(async move { api::save(&config).await }, move |block| made.set(Some(block.id)));
             }
         }
     };
@@ -114,10 +113,10 @@ fn Becoming(props: &BecomingProps) -> Html {
                 } else if !all_seen {
                     <span class="finding error">{ tr!("another.ticks_first") }</span>
                 }
-                if let Some(block) = &*made {
+                if let Some(id) = *made {
                     <span role="status" data-test="made">
-                        { tr!("another.saved", id = block.id) }{ " " }
-                        <a href={place(block)}>{ tr!("another.open") }</a>
+                        { tr!("another.saved", id = id) }{ " " }
+                        <a href={place(props.kind, id)}>{ tr!("another.open") }</a>
                     </span>
                 }
             </div>

@@ -60,16 +60,16 @@ fn head(block: &Rc<Block>) -> Html {
             <h1>{ block.config.name().to_owned() }</h1>
             <span class="pill">{ Kind::of(&block.config).to_string() }</span>
             <span class="quiet mono">{ block.config.target_text().to_owned() }</span>
-            <span class="page-do"><a class="button link" href={place(block)}>{ tr!("take.open") }</a></span>
+            <span class="page-do"><a class="button link" href={place(Kind::of(&block.config), block.id)}>{ tr!("take.open") }</a></span>
         </div>
     }
 }
 
 /// Where a block is configured.
-pub(super) fn place(block: &Block) -> String {
-    match Kind::of(&block.config) {
-        Kind::MsgCipGeneric => format!("/deck/{}", block.id),
-        _ => format!("/words/{}", block.id),
+pub(super) fn place(kind: Kind, id: BlockId) -> String {
+    match kind {
+        Kind::MsgCipGeneric => format!("/deck/{id}"),
+        _ => format!("/words/{id}"),
     }
 }
 

@@ -15,7 +15,6 @@ mod save;
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use cipdeck_shared::config::Block;
 use yew::prelude::*;
 
 pub use self::desk::Desk;
@@ -23,7 +22,7 @@ use self::{
     can::can_be_read, desk::Deed, editor::Wish, entry::entries, found::Found, intake::Intake,
     reading::use_reading,
 };
-use super::i18n::tr;
+use super::{api::Stored, i18n::tr};
 use crate::{hooks::use_title, office::fetch::use_fetched};
 
 /// The desk outlives the page: who looks at a project and comes back finds it as it was.
@@ -38,10 +37,10 @@ pub(super) fn ImportPage(props: &ImportPageProps) -> Html {
     use_title(&tr!("intake.title"));
     let desk = props.desk.clone();
     use_reading(&desk);
-    let in_deck = use_fetched::<Vec<Block>>("blocks".to_owned());
+    let in_deck = use_fetched::<Vec<Stored>>("blocks".to_owned());
     let names = use_memo(in_deck.data.clone(), |blocks| {
         let blocks = blocks.iter().flat_map(|blocks| blocks.iter());
-        blocks.map(|block| block.config.name().to_owned()).collect::<BTreeSet<_>>()
+        blocks.map(|block| block.name.clone()).collect::<BTreeSet<_>>()
     });
     let decided: Vec<_> =
         desk.sources.iter().map(|it| (it.key, it.imported.clone(), it.picks.clone())).collect();

@@ -3,7 +3,7 @@
 mod preview;
 mod upload;
 
-use cipdeck_shared::api::Role;
+use cipdeck_shared::api::{ProjectFolder, Role};
 use yew::prelude::*;
 
 use self::upload::Upload;
@@ -11,7 +11,7 @@ use super::i18n::tr;
 use crate::{
     hooks::{use_session, use_title},
     net::session,
-    office::kit::note,
+    office::{fetch::use_fetched, kit::note},
 };
 
 /// The page.
@@ -19,10 +19,17 @@ use crate::{
 pub(super) fn ProjectPage() -> Html {
     use_title(&tr!("project.title"));
     use_session();
+    let served = use_fetched::<ProjectFolder>("project/folder".to_owned());
     html! {
         <div class="code-page">
             <div class="page-head"><h1>{ tr!("project.title") }</h1></div>
             <p class="lead">{ tr!("project.lead") }</p>
+            if let Some(served) = &served.data {
+                <p class="code-all" data-test="served">{ match &served.folder {
+                    Some(folder) => tr!("project.served", folder = folder),
+                    None => tr!("project.not_served"),
+                } }</p>
+            }
             <div class="cards">
                 <section class="panel">
                     <h2>{ tr!("project.down_title") }</h2>
