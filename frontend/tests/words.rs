@@ -67,7 +67,9 @@ async fn the_keys_walk_as_the_words_are_read() {
         let active = root.owner_document().unwrap().active_element().unwrap();
         active.get_attribute("data-byte").unwrap_or_default()
     };
-    for (key, byte) in [("ArrowRight", "0"), ("ArrowRight", "3"), ("End", "6"), ("ArrowLeft", "7"), ("Home", "1")] {
+    for (key, byte) in
+        [("ArrowRight", "0"), ("ArrowRight", "3"), ("End", "6"), ("ArrowLeft", "7"), ("Home", "1")]
+    {
         press(&root, key).await;
         assert_eq!(at(&root), byte, "{key}");
     }

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// In the order in which they run; each reads what the others do not.
-const TARGETS: [&str; 6] = ["deframer", "reply", "epath", "effects", "target_path", "client"];
+const TARGETS: [&str; 7] = ["deframer", "reply", "epath", "effects", "target_path", "code_import", "client"];
 
 /// Builds all targets and runs each for this long; says how often.
 pub(crate) fn all(report: &mut Report, seconds: u64) -> Result<()> {

@@ -23,7 +23,6 @@ mod ink;
 mod json;
 mod l5x;
 mod message;
-#[allow(dead_code, reason = "the dialects will")]
 mod name;
 mod parameters;
 mod program;
@@ -32,7 +31,6 @@ mod recognise;
 mod remark;
 mod rust;
 mod sysmac_st;
-#[allow(dead_code, unused_imports, reason = "the dialects will")]
 mod text;
 
 use alloc::string::String;
@@ -173,3 +171,6 @@ fn read(form: recognise::Form, text: &str) -> Imported {
         },
     }
 }
+
+#[cfg(test)]
+mod tests;

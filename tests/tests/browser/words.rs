@@ -55,7 +55,6 @@ async fn a_send_req_is_typed_as_words_and_runs_as_in_the_controller() {
     verdict(&user, "refused", "Exchange correct, but the device refused: 16#05").await;
     let report = user.find("the report", &part("communication-report"), PATIENCE).await;
     assert_eq!(report, "Exchange correct", "communication report 0 all the same");
-    user.see("Last good value", PATIENCE).await;
     user.shot("refused").await;
     user.click_at("//a[contains(@class, 'back')]", "All blocks").await;
     user.see("but the device refused: 16#05", PATIENCE).await;
@@ -94,7 +93,7 @@ async fn the_other_forms_have_their_own_words_and_a_write_asks() {
     user.click_part("form-data-exch").await;
     user.click_part("preset-modbus-write").await;
     user.click_part("create").await;
-    user.see("ADDMX('0.2.0{0.0.0.0}UNC.CIP')", PATIENCE).await;
+    assert_eq!(value(&user, "Address").await, "ADDMX('0.2.0{0.0.0.0}UNC.CIP')");
     user.shot("data-exch").await;
     user.click("Write…").await;
     user.see("Open the write window?", PATIENCE).await;
@@ -153,13 +152,14 @@ async fn what_is_typed_wrong_stays_and_is_said_where_it_is() {
     user.fill("Management_Param[2]", "30").await;
     user.click_part("auto-length").await;
     user.fill("Management_Param[3]", "8").await;
-    user.see("not sent", PATIENCE).await;
+    user.point_at("//*[@data-test='sent-words']//button[@data-byte='8']").await;
+    user.see("Management_Param[3] ends before it", PATIENCE).await;
     user.shot("length").await;
     user.close().await;
 }
 
 #[tokio::test]
-async fn a_changed_block_is_not_overwritten_and_a_refused_start_never_raises_the_bit() {
+async fn a_changed_block_is_not_overwritten_and_a_device_that_is_gone_is_said() {
     let relay = Relay::start().await;
     let simulator = Service::simulate("127.0.0.1:0", &[]).await;
     let address = format!("ADDR('0.2.0.{}')", simulator.address);

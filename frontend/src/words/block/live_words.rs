@@ -45,8 +45,8 @@ pub(super) fn live_words(form: SendReqForm, words: &WordsStatus, verdict: Verdic
                     }) }
                 </> }) }
                 { row(1, report, html! { <>
-                    { byte(report >> 8, named(tr!("live.operation"), is_over.then_some(operation).flatten(), operation_code, is_over && operation_code != 0, "operation-report")) }
-                    { byte(report & 0xFF, named(tr!("live.communication"), is_over.then_some(communication).flatten(), code, is_over && code != 0, "communication-report")) }
+                    { byte(report >> 8, named(tr!("live.operation"), operation, operation_code, is_over, "operation-report")) }
+                    { byte(report & 0xFF, named(tr!("live.communication"), communication, code, is_over, "communication-report")) }
                 </> }) }
                 { row(2, timeout, html! { <span class={classes!((timeout == 0).then_some("loud-text"))}>{ time }</span> }) }
                 { row(3, length, html! { <span data-test="live-length">{ bytes }</span> }) }
@@ -70,12 +70,14 @@ fn byte(value: u16, meaning: Html) -> Html {
 }
 
 /// A report with its name.
-fn named(what: AttrValue, entry: Option<Entry>, code: u8, bad: bool, test: &'static str) -> Html {
+fn named(what: AttrValue, entry: Option<Entry>, code: u8, is_over: bool, test: &'static str) -> Html {
     let name = match (&entry, code) {
+        // Before the end a 0 is no report.
+        _ if !is_over => AttrValue::default(),
         (Some(entry), _) => AttrValue::from(entry.name),
         (None, 0) => tr!("live.nothing"),
         (None, MESSAGE_REFUSED) => AttrValue::default(),
         (None, _) => tr!("live.not_in_tables"),
     };
-    html! { <>{ what }{ " " }<b class={classes!(bad.then_some("bad-text"))} data-test={test}>{ name }</b></> }
+    html! { <>{ what }{ " " }<b class={classes!((is_over && code != 0).then_some("bad-text"))} data-test={test}>{ name }</b></> }
 }

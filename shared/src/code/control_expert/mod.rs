@@ -14,7 +14,6 @@ mod words;
 mod write;
 
 pub(super) use self::read::import;
-pub(super) use self::table::is_request as is_request_in_words;
 pub(super) use self::write::export;
 
 #[cfg(test)]

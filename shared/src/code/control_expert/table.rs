@@ -111,12 +111,6 @@ fn lines(rows: &[Row]) -> Range<usize> {
     rows.first().map_or(1, |row| row.line)..rows.last().map_or(1, |row| row.line) + 1
 }
 
-/// Whether a line is a whole request in words: those of bytes are groups of two digits, or no request when they are taken
-/// for words.
-pub(in crate::code) fn is_request(line: &str) -> bool {
-    row(1, line).is_some_and(|row| row.words.len() > 1 && !form::possible(&row.words).is_empty())
-}
-
 /// The dialect of a layout.
 pub(super) const fn dialect(form: SendReqForm) -> Dialect {
     match form {

@@ -63,6 +63,14 @@ pub(super) fn export(block: &BlockConfig) -> Code {
     Code { text: format!("{}{}\n", comment(Dialect::Hex, &about), spaced(message.plan.bytes())), changes }
 }
 
+/// Whether a line is a whole request to an object.
+pub(super) fn is_request(text: &str) -> bool {
+    let Line::Bytes { bytes, .. } = read(text, 0, false) else { return false };
+    MessageRouterRequest::decode(&bytes).is_ok_and(|request| {
+        request.service().0 != 0 && object(request.path(), &mut MsgCipGeneric::product_name(""))
+    })
+}
+
 /// Blocks from lines of bytes.
 pub(super) fn import(text: &str) -> Imported {
     let mut imported = Imported::default();

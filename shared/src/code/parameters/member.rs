@@ -89,11 +89,11 @@ pub(super) fn head_of(cells: &[&str]) -> Option<Head> {
         "parametro" | "parameter" | "member" | "membro" | "miembro" | "campo" | "feld" | "elemento"
     );
     let value = |cell: &&str| matches!(plain(cell).as_str(), "value" | "valor" | "wert");
-    is_head.then(|| Head { value: cells.iter().position(|cell| value(cell)) })
+    is_head.then(|| Head { value: cells.iter().position(value) })
 }
 
 /// `---+---`, `|---|---|`
-pub(super) fn is_rule(line: &str) -> bool {
+pub(in crate::code) fn is_rule(line: &str) -> bool {
     let line = line.trim();
     line.contains("---") && line.chars().all(|c| "|-+: ".contains(c))
 }

@@ -10,18 +10,19 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use self::member::{Member, head_of, is_rule, member};
+pub(super) use self::member::is_rule;
+use self::member::{Member, head_of, member};
 use super::dialect::Dialect;
 use super::remark::{Remark, RemarkKind};
 use super::{Found, Imported};
 use crate::config::{MsgCipGeneric, read_hex, read_number, write_hex};
 use crate::plan::Severity;
 
-/// Whether a line is a row of such a table: its first cell names a member, or it is a head or a rule.
+/// Whether a line is a row of such a table: its first cell names a member, or it is a head.
 pub(super) fn is_row(line: &str) -> bool {
     let cells = cells(line);
     let named = cells.first().is_some_and(|name| member(name).is_some());
-    cells.len() > 1 && (named || head_of(&cells).is_some()) || is_rule(line)
+    cells.len() > 1 && (named || head_of(&cells).is_some())
 }
 
 /// Blocks from a table.

@@ -4,4 +4,4 @@ mod lexer;
 mod value;
 
 pub(super) use self::lexer::{Kind, Language, Token, tokens};
-pub(super) use self::value::{Names, Value, groups, quoted, value};
+pub(super) use self::value::{MAX_GROUP, Names, Value, groups, quoted, value};

@@ -28,11 +28,18 @@ pub(in crate::code) type Names = BTreeMap<String, Value>;
 /// Parentheses inside of parentheses.
 const MAX_DEPTH: usize = 16;
 
+/// Tokens between two brackets: several times what a message has. More are no arguments, so that brackets that nobody
+/// closes cost no more than these.
+pub(in crate::code) const MAX_GROUP: usize = 8192;
+
 /// What stands between an opening bracket and its closing one, divided at commas; and how many tokens that is, with both
 /// brackets.
 pub(in crate::code) fn groups<'t, 'a>(tokens: &'t [Token<'a>]) -> (Vec<&'t [Token<'a>]>, usize) {
     let (mut groups, mut depth, mut from) = (Vec::new(), 0_usize, 1);
     for (at, token) in tokens.iter().enumerate() {
+        if at == MAX_GROUP {
+            return (Vec::new(), at);
+        }
         if token.kind != Kind::Sign {
             continue;
         }

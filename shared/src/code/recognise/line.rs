@@ -1,6 +1,6 @@
 //! What a line looks like.
 
-use crate::code::{control_expert, hex, parameters};
+use crate::code::{hex, parameters};
 
 /// What a line looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,16 +21,13 @@ pub(super) enum Look {
     Shell,
     /// Bytes.
     Hex,
-    /// Words of SEND_REQ or DATA_EXCH without a program.
+    /// Words of a SEND_REQ, alone or in a row of a table.
     Words,
     /// A row of a table of parameters.
     Table,
     /// Structured Text or Instruction List, and whatever looks like nothing else.
     Iec,
 }
-
-/// Statements of Python that have others below them.
-const PYTHON_BLOCKS: [&str; 8] = ["if ", "elif ", "else:", "for ", "while ", "try:", "except", "finally:"];
 
 /// What a line looks like, after one that looks like `before`.
 pub(super) fn look(line: &str, before: Option<Look>) -> Look {
@@ -70,25 +67,25 @@ pub(super) fn look(line: &str, before: Option<Look>) -> Look {
     }
     match before {
         // Inside of a block, and statements beside it.
-        Some(Look::Python)
-            if indented
-                || is_python_assignment(line)
-                || starts(&[")", "]", "}", "@", "assert ", "raise "])
-                || line.ends_with(':') && starts(&PYTHON_BLOCKS) =>
-        {
-            return Look::Python;
-        }
+        Some(Look::Python) if indented || is_python_statement(line) => return Look::Python,
         Some(Look::Rust) if indented || starts(&["}", ")"]) => return Look::Rust,
         _ => {}
     }
-    if control_expert::is_request_in_words(line) {
+    if is_words(line) && !hex::is_request(line) {
         return Look::Words;
     }
     if hex::is_hex(line) {
         return Look::Hex;
     }
+    if parameters::is_rule(line) {
+        return Look::Nothing;
+    }
     if parameters::is_row(line) {
         return Look::Table;
+    }
+    // The head of a table: what it is of is seen in the next line.
+    if line.starts_with('|') {
+        return if matches!(before, Some(Look::Words | Look::Table)) { Look::Nothing } else { Look::Remark };
     }
     if is_python_assignment(line) && has(&["pycomm3", "bytes.fromhex(", "b'", "b\"", "bytes("]) {
         return Look::Python;
@@ -103,6 +100,25 @@ fn is_json(line: &str) -> bool {
     rest.is_empty() || rest.starts_with(['"', '{', '}', ']'])
 }
 
+/// Groups of four hexadecimal digits: `0000 030E 0120`, `16#0000, 16#030E`; one alone in its line, or several in a cell.
+fn is_words(line: &str) -> bool {
+    let word = |group: &str| {
+        let digits = group.strip_prefix("16#").unwrap_or(group);
+        digits.len() == 4 && digits.chars().all(|c| c.is_ascii_hexdigit())
+    };
+    let cells = line.split(['|', '\t']).map(str::trim).filter(|cell| !cell.is_empty());
+    let alone = cells.clone().count() == 1;
+    cells.into_iter().any(|cell| {
+        let groups = cell.split([' ', ',', ';']).filter(|group| !group.is_empty());
+        let words = groups.clone().filter(|group| word(group)).count();
+        // The length may stand behind.
+        let length =
+            groups.clone().next_back().is_some_and(|last| last.parse::<u16>().is_ok() && last.len() < 4);
+        let all = words + usize::from(length) == groups.count();
+        all && (words > 1 || words == 1 && alone && !length)
+    })
+}
+
 /// `cipdeck send …`, however it is called.
 fn is_shell(line: &str) -> bool {
     let line = line.strip_prefix("$ ").unwrap_or(line);
@@ -110,6 +126,16 @@ fn is_shell(line: &str) -> bool {
     let command = words.next().unwrap_or_default();
     let program = command.rsplit(['/', '\\']).next().unwrap_or_default();
     matches!(program, "cipdeck" | "cipdeck.exe")
+}
+
+/// What may follow in a program that is Python so far.
+fn is_python_statement(line: &str) -> bool {
+    const WORDS: [&str; 14] = [
+        "if ", "elif ", "else:", "for ", "while ", "try:", "except", "finally:", "raise ", "return",
+        "assert ", "@", ")", "]",
+    ];
+    let begins = WORDS.iter().any(|word| line.starts_with(word)) || line.starts_with('}');
+    is_python_assignment(line) || begins && !line.contains(":=") && !line.ends_with(';')
 }
 
 /// `reply = …`, but neither `:=` nor `==`.

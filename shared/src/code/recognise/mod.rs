@@ -55,7 +55,7 @@ pub(super) fn pieces(text: &str, dialect: Option<Dialect>) -> Vec<Piece<'_>> {
             Look::Rust => pieces.push(piece(Form::Code(Dialect::Rust))),
             Look::Shell => pieces.push(piece(Form::Code(Dialect::Cli))),
             Look::Hex => pieces.push(piece(Form::Code(Dialect::Hex))),
-            // The words tell which of the three it is.
+            // Which of the three it is, the words tell.
             Look::Words => pieces.push(piece(Form::Code(Dialect::SendReqEtc100))),
             Look::Table => pieces.push(piece(Form::Parameters)),
             Look::Iec => {
@@ -85,15 +85,16 @@ fn parts(text: &str) -> Vec<Part> {
     let mut waiting: Option<Part> = None;
     let mut open = Open::default();
     let mut at = 0;
+    let mut after_blank = false;
     for (number, line) in (1..).zip(text.split_inclusive('\n')) {
         let bytes = at..at + line.len();
         at = bytes.end;
         let current = parts.last().map(|part| part.look);
-        let found = if current.is_some_and(|look| open.holds(look, line)) {
-            Look::Nothing
-        } else {
-            look(line, current)
-        };
+        // A table that begins after an empty line is another one.
+        let context = current.filter(|_| !(after_blank && line.trim_start().starts_with('|')));
+        after_blank = line.trim().is_empty();
+        let held = current.is_some_and(|look| open.holds(look, line));
+        let found = if held { Look::Nothing } else { look(line, context) };
         match found {
             Look::Nothing => {
                 if let Some(last) = waiting.as_mut().or(parts.last_mut()) {
@@ -131,6 +132,11 @@ fn parts(text: &str) -> Vec<Part> {
         if let Some(last) = parts.last() {
             open.line(last.look, line);
         }
+    }
+    // What is no comment must not get lost.
+    if let Some(last) = waiting.filter(|last| text.get(last.bytes.clone()).is_some_and(|it| it.contains('|')))
+    {
+        parts.push(Part { look: Look::Iec, ..last });
     }
     parts
 }

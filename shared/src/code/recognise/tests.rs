@@ -109,24 +109,3 @@ fn a_bracket_that_nobody_closes_does_not_take_everything() {
     let forms: Vec<String> = told(text).into_iter().map(|it| it.split(':').next().unwrap().into()).collect();
     assert_eq!(forms, ["1 ccw-st", "2 json", "3 l5x"]);
 }
-
-#[test]
-fn words_of_a_request_are_no_bytes_of_one() {
-    let text = "0000 030E 0120 0124 0730\n0000 C0A8 0166 024E 4420 0124 0000 000A\n024E 4420 0124 0000 000A\n\
-                0E03 2001 2401 3007\n0E 03 20 01 24 01 30 07\n";
-    assert_eq!(
-        told(text),
-        [
-            "1 send-req-etc100: 0000 030E 0120 0124 0730 | 0000 C0A8 0166 024E 4420 0124 0000 000A | 024E 4420 0124 0000 000A",
-            "4 hex: 0E03 2001 2401 3007 | 0E 03 20 01 24 01 30 07",
-        ]
-    );
-    let imported = crate::code::import(text, None);
-    let dialects: Vec<_> = imported.blocks.iter().map(|found| found.dialect.name()).collect();
-    assert_eq!(
-        dialects,
-        ["send-req-etc100", "send-req-etc101", "data-exch", "hex", "hex"],
-        "{:?}",
-        imported.remarks
-    );
-}

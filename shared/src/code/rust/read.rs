@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::dialect::Dialect;
-use super::super::program::{Kind, Language, Names, Token, Value, groups, tokens, value};
+use super::super::program::{Kind, Language, MAX_GROUP, Names, Token, Value, groups, tokens, value};
 use super::super::remark::{Remark, RemarkKind};
 use super::super::{Found, Imported};
 use crate::config::{MsgCipGeneric, TargetPath, write_hex};
@@ -24,6 +24,19 @@ const SERVICES: [(&str, i64); 8] = [
     ("get_attribute_single", 0x0E),
     ("set_attribute_single", 0x10),
     ("no_operation", 0x17),
+];
+
+/// What says where messages go.
+const WAYS: [&str; 9] = [
+    "connect",
+    "new_host_lookup",
+    "from_millis",
+    "from_secs",
+    "with_port_slot",
+    "with_port",
+    "PortSegment",
+    "EipConnection",
+    "AbEipConnection",
 ];
 
 /// Blocks from a program.
@@ -81,11 +94,12 @@ impl<'t, 'a> Program<'t, 'a> {
                 4 + length
             }
             [dot, name, open, ..] if dot.is(".") && open.is("(") => {
-                let service = SERVICES.iter().find(|(service, _)| name.is(service));
-                let (arguments, length) = groups(rest.get(2..).unwrap_or_default());
-                if let Some((_, service)) = service.filter(|_| !arguments.is_empty()) {
-                    self.message(rest.get(..2 + length).unwrap_or(rest), Some(*service), &arguments);
-                    return 2 + length;
+                if let Some((_, service)) = SERVICES.iter().find(|(service, _)| name.is(service)) {
+                    let (arguments, length) = groups(rest.get(2..).unwrap_or_default());
+                    if !arguments.is_empty() {
+                        self.message(rest.get(..2 + length).unwrap_or(rest), Some(*service), &arguments);
+                        return 2 + length;
+                    }
                 }
                 self.way(rest);
                 1
@@ -99,6 +113,7 @@ impl<'t, 'a> Program<'t, 'a> {
 
     /// `let mut name: type = …;`, `const NAME: type = …;`: only the name is behind; what it is made of is read on.
     fn bind(&mut self, rest: &'t [Token<'a>]) -> usize {
+        let rest = rest.get(..rest.len().min(MAX_GROUP)).unwrap_or_default();
         let end = rest.iter().position(|token| token.is(";")).unwrap_or(rest.len());
         let Some(sign) = rest.get(..end).unwrap_or_default().iter().position(|token| token.is("=")) else {
             return 1;
@@ -120,7 +135,7 @@ impl<'t, 'a> Program<'t, 'a> {
 
     /// Something that says where messages go, and how long they have.
     fn way(&mut self, rest: &[Token<'_>]) {
-        let Some(first) = rest.first().filter(|first| first.kind == Kind::Name) else { return };
+        let Some(first) = rest.first().filter(|first| WAYS.contains(&first.text)) else { return };
         let (arguments, _) = match rest.get(1) {
             Some(open) if open.is("(") || open.is("{") => groups(rest.get(1..).unwrap_or_default()),
             _ => (Vec::new(), 0),

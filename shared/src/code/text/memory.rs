@@ -62,7 +62,8 @@ impl<'s, 'a> Memory<'s, 'a> {
         memory
     }
 
-    /// Before an item. For many calls in one text go through the items with [`Memory::step`] instead.
+    /// Before an item.
+    #[cfg(test)]
     pub(in crate::code) fn before(script: &'s Script<'a>, item: usize) -> Self {
         let mut memory = Self::new(script);
         for (index, item) in script.items.iter().enumerate().take(item) {
@@ -103,6 +104,7 @@ impl<'s, 'a> Memory<'s, 'a> {
     }
 
     /// A whole number that a variable holds.
+    #[cfg(test)]
     pub(in crate::code) fn integer(&self, key: &str) -> Option<i128> {
         self.value(key)?.integer_in(self)
     }

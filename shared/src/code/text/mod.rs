@@ -15,7 +15,7 @@
 //! for (index, item) in script.items.iter().enumerate() {
 //!     if let Statement::Call(call) = &item.statement && call.is("SEND_REQ") {
 //!         let words = call.argument(2, "Data_to_Send").and_then(|argument| argument.value.as_ref()?.reference());
-//!         let third = memory.integer("tab_gest[2]"); // as assigned before this call, or initially
+//!         let third = memory.value("tab_gest[2]"); // as assigned before this call, or initially
 //!     }
 //!     memory.step(index, item);
 //! }
@@ -33,11 +33,9 @@ mod token;
 #[cfg(test)]
 mod tests;
 
-pub(super) use self::literal::{Literal, quoted, read_literal};
-pub(super) use self::memory::{Cell, Memory};
-pub(super) use self::reading::{Reading, declared, left_over, lower_bound, roots};
+pub(super) use self::literal::{Literal, quoted};
+pub(super) use self::memory::Memory;
+pub(super) use self::reading::{Reading, left_over, roots};
 pub(super) use self::script::{Item, Script};
-pub(super) use self::syntax::{
-    Argument, Call, Declaration, Declared, Expression, Reference, Statement, Step,
-};
-pub(super) use self::token::{Lexeme, Place, Token, tokens};
+pub(super) use self::syntax::{Call, Declaration, Declared, Expression, Reference, Statement, Step};
+pub(super) use self::token::{Lexeme, Place, tokens};

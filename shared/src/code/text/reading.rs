@@ -239,25 +239,6 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
 /// More than any message has.
 const MAX_ELEMENTS: usize = 4096;
 
-/// The lower bound that an array is declared with.
-pub(in crate::code) fn lower_bound(script: &Script<'_>, key: &str) -> Option<i128> {
-    declared(script, key)?.bounds.first().map(|(low, _)| *low)
-}
-
-/// The declared type of a variable.
-pub(in crate::code) fn declared<'s, 'a>(
-    script: &'s Script<'a>,
-    key: &str,
-) -> Option<&'s super::syntax::Declared<'a>> {
-    script.items.iter().find_map(|item| match &item.statement {
-        Statement::Declaration(declaration) => {
-            let is = |(name, _): &(&str, Place)| name.to_lowercase() == key;
-            declaration.names.iter().any(is).then_some(&declaration.kind)
-        }
-        _ => None,
-    })
-}
-
 /// What belongs to no message: one remark for each run of such statements. A statement belongs to a message if it
 /// has one of its variables in it, or one that such an assignment has.
 pub(in crate::code) fn left_over(
