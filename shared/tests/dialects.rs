@@ -90,6 +90,35 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Nothing that somebody pastes ends the program, and nothing is without a word.
+    #[test]
+    fn any_text_is_read_or_told(
+        dialect in proptest::sample::select(Dialect::ALL.to_vec()),
+        asked in proptest::option::of(proptest::sample::select(Dialect::ALL.to_vec())),
+        cut in any::<proptest::sample::Index>(),
+        at in any::<proptest::sample::Index>(),
+        noise in "[ -~\\n(){}\\[\\]'\"<>*#%é🦀0-9]{0,12}",
+    ) {
+        let text = export(&ramp(), dialect, &options(cut.index(2) == 1)).text;
+        let mut characters: Vec<char> = text.chars().collect();
+        characters.truncate(cut.index(characters.len() + 1));
+        let at = at.index(characters.len() + 1);
+        characters.splice(at..at, noise.chars());
+        let text: String = characters.into_iter().collect();
+        let imported = import(&text, asked);
+        let words = without_comments(asked.unwrap_or(dialect), &text);
+        if asked.is_some() && !words.trim().is_empty() {
+            prop_assert!(!imported.blocks.is_empty() || !imported.remarks.is_empty(), "{:?}: {}", asked, text);
+        }
+        for found in &imported.blocks {
+            prop_assert!(found.lines.start >= 1 && found.lines.start < found.lines.end, "{:?}", found);
+        }
+    }
+}
+
 /// As it is typed by an engineer: a drive's ramp.
 fn ramp() -> BlockConfig {
     let mut config = MsgCipGeneric::product_name("4,192.168.1.100");

@@ -25,6 +25,8 @@ pub(super) fn export(block: &BlockConfig) -> Code {
     let mut changes = message.untold(Tells::default());
     let timeout = timeout(&message, &mut changes);
     closes_at_end(&message, &mut changes);
+    // What is sent does not depend on it.
+    changes.push(Change::new(&"name", &block.name(), &"", Grade::Carried, Why::NoSuchMember));
     let app = &message.config.app_cfg;
     let mut words: Vec<String> = ["cipdeck", "send"].map(String::from).to_vec();
     let mut option = |name: &str, value: &str| words.extend([name.to_string(), shell::quoted(value)]);

@@ -9,6 +9,7 @@ mod command_line;
 mod crash;
 mod crowd;
 mod described;
+mod dialects;
 mod discover;
 mod door;
 mod foreign_client;

@@ -234,7 +234,7 @@ mod tests {
         (config.req_data, config.target_cfg.ucmm_timeout) = ("0a0b".into(), 2_500);
         let block = BlockConfig::from(config.clone());
         let code = export(&block);
-        assert_eq!(code.changes, []);
+        assert_eq!(code.losses().count(), 0);
         let read = import(&code.text);
         assert_eq!((read.blocks.len(), read.remarks.len()), (1, 0), "{read:?}");
         config.name = "send".into();

@@ -64,7 +64,7 @@ impl Program<'_> {
             "// Cargo.toml: rseip = \"0.3\"\n\
              //             tokio = { version = \"1\", features = [\"macros\", \"net\", \"rt-multi-thread\", \"time\"] }\n",
         );
-        text.push_str(self.imports());
+        text.push_str(&self.imports());
         // Writing to a String cannot fail.
         let _ =
             writeln!(text, "\nconst UCMM_TIMEOUT: Duration = Duration::from_millis({ucmm}); // 0x{ucmm:X}");
@@ -95,28 +95,30 @@ impl Program<'_> {
         text
     }
 
-    fn imports(&self) -> &'static str {
-        match (self.message.plan.connection(), self.message.path.route.is_empty()) {
-            (Some(_), _) => {
-                "use std::error::Error;\nuse std::time::Duration;\n\n\
-                 #[allow(unused_imports)]\nuse rseip::cip::epath::{EPath, PortSegment, Segment};\n\
-                 use rseip::cip::{MessageReply, MessageRequest};\nuse rseip::client::{EipConnection, OpenOptions};\n\
-                 use rseip::precludes::MessageService;\nuse tokio::time::timeout;\n"
-            }
-            (None, true) => {
-                "use std::error::Error;\nuse std::time::Duration;\n\nuse rseip::ClientError;\n\
-                 use rseip::cip::codec::decode::message_reply::decode_unconnected_send;\n\
-                 #[allow(unused_imports)]\nuse rseip::cip::epath::EPath;\n\
-                 use rseip::cip::{MessageReply, MessageRequest};\nuse rseip::client::EipContext;\n\
-                 use tokio::net::TcpStream;\nuse tokio::time::timeout;\n"
-            }
-            (None, false) => {
-                "use std::error::Error;\nuse std::time::Duration;\n\n\
-                 #[allow(unused_imports)]\nuse rseip::cip::epath::{EPath, PortSegment, Segment};\n\
-                 use rseip::cip::{MessageReply, MessageRequest};\nuse rseip::client::EipClient;\n\
-                 use rseip::precludes::MessageService;\nuse tokio::time::timeout;\n"
-            }
+    fn imports(&self) -> String {
+        let (routed, connected) =
+            (!self.message.path.route.is_empty(), self.message.plan.connection().is_some());
+        let built = self.message.config.app_cfg.instance <= MAX_INSTANCE;
+        let mut text = String::from("use std::error::Error;\nuse std::time::Duration;\n\n");
+        if !connected && !routed {
+            text.push_str("use rseip::ClientError;\nuse rseip::cip::codec::decode::message_reply::decode_unconnected_send;\n");
         }
+        text.push_str(match (connected, routed, built) {
+            (_, true, _) => "use rseip::cip::epath::{EPath, PortSegment, Segment};\n",
+            (true, false, _) => "use rseip::cip::epath::{EPath, Segment};\n",
+            (false, false, true) => "use rseip::cip::epath::EPath;\n",
+            (false, false, false) => "",
+        });
+        text.push_str("use rseip::cip::{MessageReply, MessageRequest};\n");
+        text.push_str(match (connected, routed) {
+            (true, _) => {
+                "use rseip::client::{EipConnection, OpenOptions};\nuse rseip::precludes::MessageService;\n"
+            }
+            (false, true) => "use rseip::client::EipClient;\nuse rseip::precludes::MessageService;\n",
+            (false, false) => "use rseip::client::EipContext;\nuse tokio::net::TcpStream;\n",
+        });
+        text.push_str("use tokio::time::timeout;\n");
+        text
     }
 
     /// Service, path and data.
