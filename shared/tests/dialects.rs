@@ -131,6 +131,7 @@ fn ramp() -> BlockConfig {
 
 /// `cargo test -p cipdeck-shared --test dialects table -- --nocapture`
 #[test]
+#[expect(clippy::print_stdout, reason = "the table is for a person")]
 fn one_message_in_every_dialect_as_a_table() {
     let block = ramp();
     let sent = sends(&block).expect("a message");
@@ -229,7 +230,7 @@ fn no_name_breaks_out_of_any_dialect() {
                         .collect();
                     assert_eq!(
                         requests,
-                        [sent.request.clone()],
+                        core::slice::from_ref(&sent.request),
                         "{dialect} {name:?}\n{text}\n{:?}",
                         imported.remarks
                     );

@@ -88,7 +88,7 @@ fn words() -> impl Strategy<Value = SendReq> {
                     format!("ADDMX('0.3.0{{{a}.{b}.{c}.{d}}}{}.CIP')", if connected { "CON" } else { "UNC" })
                 }
             };
-            let length = i64::try_from(bytes.len()).expect("short");
+            let length = i64::try_from(bytes.len()).unwrap_or(i64::MAX);
             config.data_to_send = write_words(&cipdeck_shared::config::words_of(&bytes));
             config.management_param = vec![0, 0, timeout, length];
             config.received_data_size = size;
