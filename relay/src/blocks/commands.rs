@@ -39,7 +39,7 @@ impl Blocks {
             Some(reader) => self.read(actor, &block, reader.clone()).await,
             None => Err("no service reads what this one writes".to_owned()),
         };
-        let new = reader.and_then(|reader| ritual::wanted(&reader, &plan, block.config.req_layout()));
+        let new = reader.and_then(|reader| ritual::wanted(&reader, &plan, layout(&block.config)));
         let offer = Offer { revision, request: Arc::clone(plan.bytes()), old: old.clone().ok(), new };
         Ok(policy.offer(actor, id, &offer, old.err()).map_err(Refused::from)?)
     }
@@ -92,7 +92,7 @@ impl Blocks {
         let ended = self.0.runner.pass(block.config.name(), plan, order).await;
         ended
             .map_err(|refused| refused.to_string())
-            .and_then(|ended| ritual::found(&ended, block.config.req_layout()))
+            .and_then(|ended| ritual::found(&ended, layout(&block.config)))
     }
 
     fn order(&self, actor: &Actor, id: BlockId, ticket: Option<&str>) -> Result<Order, ApiError> {
@@ -128,4 +128,11 @@ impl Blocks {
         self.0.runner.cancel(id)?;
         self.status(id)
     }
+}
+
+/// What somebody says about the values that are written. Of a message with start and quantity in front of them it is about
+/// these, too: then nothing is said about the values alone.
+fn layout(config: &BlockConfig) -> &str {
+    let has_values_alone = plan(config).is_ok_and(|plan| plan.written().len() == plan.request().data().len());
+    if has_values_alone { config.req_layout() } else { "" }
 }
