@@ -252,3 +252,28 @@ fn comments_carry_nothing() {
         assert_eq!(blocks(&with), blocks(&without), "{dialect}");
     }
 }
+
+/// The requests that a person pastes from a document: nobody says which module they are for.
+#[test]
+fn pasted_words_are_recognised_without_a_word() {
+    for (words, dialect, length) in [
+        ("0000 030E 0120 0124 0730", Dialect::SendReqEtc100, 10),
+        ("0000 C0A8 0166 024E 4420 0124 0000 000A", Dialect::SendReqEtc101, 16),
+        ("0000 024E 4420 0124 0000 000A", Dialect::SendReqEtc100, 12),
+        ("024E 4420 0124 0000 000A", Dialect::DataExch, 10),
+    ] {
+        for text in
+            [words.to_owned(), format!("{words} {length}"), format!("| some request | {words} | {length} |")]
+        {
+            let imported = import(&text, None);
+            assert_eq!(imported.blocks.len(), 1, "{text}: {imported:?}");
+            let found = &imported.blocks[0];
+            let config = found.config.as_send_req().expect("words");
+            assert_eq!((found.dialect, config.data_to_send.as_str()), (dialect, words), "{text}");
+            assert_eq!(config.management_param, [0, 0, 30, length], "{text}");
+            let code = export(&found.config, dialect, &options(false));
+            let again = back(&code, dialect, None).unwrap_or_else(|why| panic!("{why}"));
+            assert_eq!(again.config.as_send_req().expect("words").data_to_send, words, "{}", code.text);
+        }
+    }
+}
