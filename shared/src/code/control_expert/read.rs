@@ -51,6 +51,9 @@ fn is_exchange(call: &Call<'_>) -> bool {
     call.is("SEND_REQ") || call.is("DATA_EXCH")
 }
 
+/// Variables that are looked at for tables that no call uses.
+const MAX_TABLES: usize = 1000;
+
 /// Tables of words that no call uses: each may be a request by itself.
 fn alone(
     variables: &Variables<'_, '_, '_>,
@@ -58,6 +61,7 @@ fn alone(
     imported: &mut Imported,
     asked: Option<SendReqForm>,
 ) {
+    let mut seen = BTreeSet::new();
     for item in &variables.script.items {
         let (reference, name) = match &item.statement {
             Statement::Declaration(declaration) if declaration.initial.is_some() => {
@@ -69,8 +73,14 @@ fn alone(
             }
             _ => continue,
         };
-        if used.contains(&key_of(name)) {
+        if used.contains(&key_of(name)) || !seen.insert(key_of(name)) {
             continue;
+        }
+        if seen.len() > MAX_TABLES {
+            let words = format!("more than {MAX_TABLES} variables: from here on no tables are looked for");
+            let place = item.place;
+            imported.remarks.push(Remark::error(place.line, place.column, name, RemarkKind::Told(words)));
+            return;
         }
         let known = variables.table(&reference).words;
         let words: Option<Vec<u16>> = known
