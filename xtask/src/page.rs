@@ -4,12 +4,12 @@ use std::{
     collections::BTreeMap,
     fs,
     hash::{DefaultHasher, Hash, Hasher},
-    io::{ErrorKind, Write},
+    io::ErrorKind,
     path::Path,
 };
 
 use anyhow::{Context, Result, bail};
-use flate2::{Compression, write::GzEncoder};
+use zopfli::{Format, Options};
 
 use crate::squeeze;
 
@@ -152,11 +152,11 @@ pub(crate) fn zip(files: &mut Files) -> Result<()> {
     Ok(())
 }
 
-/// As small as gzip makes it.
+/// As small as gzip gets: it is made once and loaded often.
 pub(crate) fn gzipped(content: &[u8]) -> Result<Vec<u8>> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(content)?;
-    Ok(encoder.finish()?)
+    let mut zipped = Vec::new();
+    zopfli::compress(Options::default(), Format::Gzip, content, &mut zipped)?;
+    Ok(zipped)
 }
 
 /// Makes the folder hold exactly these files, without touching one that has its content already.
