@@ -16,7 +16,7 @@ use yew::prelude::*;
 use self::{another::Another, choice::choice, output::Output};
 use super::i18n::tr;
 use crate::{
-    address,
+    address::{self, use_path},
     hooks::use_title,
     office::{fetch::use_fetched, kit::waiting},
 };
@@ -31,6 +31,8 @@ pub(super) struct ExportPageProps {
 pub(super) fn ExportPage(props: &ExportPageProps) -> Html {
     let fetched = use_fetched::<Block>(format!("blocks/{}", props.id));
     let language = use_state(Language::default);
+    // Renders again when the dialect in the address changes.
+    let path = use_path();
     let name = fetched.data.as_ref().map(|block| block.config.name().to_owned());
     use_title(name.as_deref().unwrap_or_default());
     let Some(block) = fetched.data.clone() else {
@@ -38,7 +40,6 @@ pub(super) fn ExportPage(props: &ExportPageProps) -> Html {
     };
     let named = address::query().strip_prefix("?as=").and_then(|name| name.parse().ok());
     let dialect = named.unwrap_or_else(|| of_its_kind(&block));
-    let path = address::path();
     let on_dialect = Callback::from(move |dialect: Dialect| {
         address::replace(&format!("{path}?as={}", dialect.name()));
     });

@@ -86,7 +86,7 @@ fn double(entry: &Entry, in_deck: &BTreeSet<String>, here: &BTreeMap<&str, usize
 }
 
 fn entry(place: Place, file: Option<&str>, found: &Found, pick: &Pick, target: &str) -> Entry {
-    let is_without_target = found.remarks.iter().any(|remark| remark.what == RemarkKind::NoDevice);
+    let is_without_target = found.remarks.iter().any(|remark| tells_no_device(&remark.what));
     let mut config = found.config.clone();
     if let Some(name) = &pick.name {
         config.set_name(name.clone());
@@ -105,6 +105,15 @@ fn entry(place: Place, file: Option<&str>, found: &Found, pick: &Pick, target: &
         findings,
         is_without_target,
         double: None,
+    }
+}
+
+/// Whether it says that a text names no device. Words of Control Expert have a sentence of their own for it.
+fn tells_no_device(what: &RemarkKind) -> bool {
+    match what {
+        RemarkKind::NoDevice => true,
+        RemarkKind::Told(words) => words.starts_with("the text names no device"),
+        _ => false,
     }
 }
 
@@ -200,6 +209,20 @@ mod tests {
         assert_eq!(aimed(SendReqForm::DataExch, "4,192.168.1.5"), "ADDMX('0.0.0{192.168.1.5}UNC.CIP')");
         assert_eq!(aimed(SendReqForm::Etc100, "ADDR('0.4.0.10.0.0.7')"), "ADDR('0.4.0.10.0.0.7')");
         assert_eq!(aimed(SendReqForm::Etc101, "192.168.1.5"), "");
+    }
+
+    #[test]
+    fn what_is_pasted_alone_wants_a_device_unless_it_is_among_its_words() {
+        let wants = |text: &str| {
+            let imported = Rc::new(cipdeck_shared::code::import(text, None));
+            let begin = [Deed::Type(0, text.into()), Deed::Read(0, text.into(), None, imported)];
+            let desk = begin.into_iter().fold(Rc::default(), Desk::reduce);
+            entries(&desk, &BTreeSet::new()).iter().map(|entry| entry.is_without_target).collect::<Vec<_>>()
+        };
+        assert_eq!(wants("0E 03 20 01 24 01 30 07"), [true]);
+        assert_eq!(wants("0000 030E 0120 0124 0730"), [true]);
+        assert_eq!(wants("024E 4420 0124 0000 000A"), [true]);
+        assert_eq!(wants("0000 C0A8 0166 024E 4420 0124 0000 000A"), [false]);
     }
 
     #[test]

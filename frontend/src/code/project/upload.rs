@@ -32,6 +32,8 @@ pub(super) fn Upload() -> Html {
         move |event: Event| {
             let input = event.target_unchecked_into::<HtmlInputElement>();
             let Some(file) = input.files().and_then(|files| files.get(0)) else { return };
+            // The same file may be chosen again.
+            input.set_value("");
             seen.set(None);
             done.set(None);
             said.set(None);
