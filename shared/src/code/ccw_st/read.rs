@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::PARAMETERS;
 use crate::code::dialect::Dialect;
 use crate::code::remark::{Remark, RemarkKind};
-use crate::code::text::{Call, Declared, Expression, Memory, Reading, Script, Statement};
+use crate::code::text::{Call, Declared, Expression, Item, Memory, Reading, Script, Statement};
 use crate::code::{Found, Imported};
 use crate::config::{MsgCipGeneric, write_hex};
 use crate::plan::Severity;
@@ -24,6 +24,7 @@ pub(in crate::code) fn import(text: &str) -> Imported {
     let types = types(&script);
     let mut memory = Memory::new(&script);
     let mut names = BTreeSet::new();
+    let mut copies = Vec::new();
     for (index, item) in script.items.iter().enumerate() {
         if let Statement::Call(call) = &item.statement
             && is_message(call, &types)
@@ -31,9 +32,13 @@ pub(in crate::code) fn import(text: &str) -> Imported {
             let reading = Reading::new(&script, &memory, item);
             let mut block = Block { call, types: &types, reading, names: &mut names };
             let config = block.config(imported.blocks.len() + 1);
-            let (lines, remarks) = (block.reading.lines(), block.reading.remarks);
+            let (lines, mut remarks) = (block.reading.lines(), block.reading.remarks);
+            remarks.extend(copied(&script, &copies, call));
             let dialect = Dialect::CcwSt;
             imported.blocks.push(Found { config: config.into(), dialect, lines, remarks });
+        }
+        if matches!(&item.statement, Statement::Call(call) if call.is("COP")) {
+            copies.push(item);
         }
         memory.step(index, item);
     }
@@ -44,6 +49,21 @@ pub(in crate::code) fn import(text: &str) -> Imported {
     let severity = if imported.blocks.is_empty() { Severity::Error } else { Severity::Note };
     imported.remarks.extend(crate::code::text::left_over(&script, names, severity));
     imported
+}
+
+/// Bytes of the request that come from other variables: their values are not known here.
+fn copied(script: &Script<'_>, copies: &[&Item<'_>], call: &Call<'_>) -> Vec<Remark> {
+    let Some(array) = Reading::key(call, 4, "ReqData") else { return Vec::new() };
+    let into_it = copies.iter().filter(|item| match &item.statement {
+        Statement::Call(copy) => Reading::key(copy, 3, "Dest").as_ref() == Some(&array),
+        _ => false,
+    });
+    let words = "COP is not carried out here: the bytes that are assigned one by one are taken; compare them";
+    let remark = |item: &&Item<'_>| {
+        let (place, what) = (&item.place, RemarkKind::told(&words));
+        Remark::warning(place.line, place.column, script.source(item), what)
+    };
+    into_it.map(remark).collect()
 }
 
 type Types<'s, 'a> = BTreeMap<String, &'s Declared<'a>>;

@@ -166,3 +166,12 @@ fn a_text_without_a_message_is_told_line_by_line() {
         ]
     );
 }
+
+#[test]
+fn a_copy_into_the_request_is_told() {
+    let text = "m_Req[1] := 1;\nCOP(TRUE, speed, 0, m_Req, 0, 4, FALSE);\nCOP(TRUE, m_Res, 0, found, 0, 4, FALSE);\n\
+                MSG_CIPGENERIC(go, c, a, t, m_Req, 4, m_Res);\n";
+    let imported = import(text);
+    let remarks = imported.blocks[0].remarks.iter().filter(|remark| remark.to_string().contains("COP"));
+    assert_eq!(remarks.map(|remark| remark.line).collect::<Vec<_>>(), [2]);
+}
