@@ -43,8 +43,8 @@ impl Convert {
         };
         let options = Options { language: if self.il { Language::Il } else { Language::St } };
         let imported = import(&text, self.from);
-        let converted: Vec<Converted> =
-            imported.blocks.iter().map(|found| Converted::new(found, self.to, &options)).collect();
+        let converted: Vec<Converted<'_>> =
+            imported.blocks.iter().map(|found| Converted::new(found, self.to, options)).collect();
         if self.json {
             say(&machine(&converted, &imported.remarks).to_string());
         } else {
@@ -66,7 +66,7 @@ impl Convert {
         }
     }
 
-    fn print(&self, converted: &[Converted], remarks: &[Remark]) {
+    fn print(&self, converted: &[Converted<'_>], remarks: &[Remark]) {
         let file = self.file.display();
         for remark in remarks.iter().chain(converted.iter().flat_map(|it| &it.found.remarks)) {
             eprintln!("{file}:{remark}");
@@ -81,7 +81,7 @@ impl Convert {
 }
 
 /// One object of JSON, or an array of several; everything else one after the other.
-fn joined(to: Dialect, converted: &[Converted]) -> String {
+fn joined(to: Dialect, converted: &[Converted<'_>]) -> String {
     let codes: Vec<&str> = converted.iter().map(|it| it.code.trim_end()).collect();
     if to == Dialect::Json && codes.len() > 1 {
         return format!("[\n{}\n]", codes.join(",\n"));
@@ -97,8 +97,8 @@ struct Converted<'a> {
 }
 
 impl<'a> Converted<'a> {
-    fn new(found: &'a Found, to: Dialect, options: &Options) -> Self {
-        let code = export(&found.config, to, options);
+    fn new(found: &'a Found, to: Dialect, options: Options) -> Self {
+        let code = export(&found.config, to, &options);
         Self { found, code: code.text, changes: code.changes }
     }
 }

@@ -1,5 +1,7 @@
 //! What the names of members and columns are in four languages.
 
+use alloc::string::String;
+
 /// A member of the configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Member {
@@ -29,7 +31,7 @@ pub(super) enum Member {
 /// By its name, without accents, case, spaces and what stands before a dot.
 pub(super) fn member(name: &str) -> Option<Member> {
     let name = name.rsplit('.').next().unwrap_or(name);
-    let plain: alloc::string::String = name.chars().filter_map(plain).collect();
+    let plain: String = name.chars().filter_map(plain).collect();
     if let Some(at) = plain.strip_prefix("memberid").and_then(|at| at.parse().ok()) {
         return (at < 3).then_some(Member::IdAt(at));
     }
@@ -82,7 +84,7 @@ pub(super) struct Head {
 
 /// Whether the cells are a head: the first is a word for parameter, and no member.
 pub(super) fn head_of(cells: &[&str]) -> Option<Head> {
-    let plain = |cell: &&str| cell.chars().filter_map(plain).collect::<alloc::string::String>();
+    let plain = |cell: &&str| cell.chars().filter_map(plain).collect::<String>();
     let first = plain(cells.first()?);
     let is_head = matches!(
         first.as_str(),
