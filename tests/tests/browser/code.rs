@@ -64,9 +64,9 @@ impl Request {
     /// A section of a program: the words one by one, then the call.
     fn section(&self) -> String {
         let words = self.words.split(' ').enumerate();
-        let mut text: String = words.map(|(index, word)| format!("Data[{index}] := 16#{word};\n")).collect();
-        text +=
-            &format!("Management[2] := 30; (* 3 s *)\nManagement[3] := {};\n{}\n", self.length, self.call);
+        let words: Vec<_> = words.map(|(index, word)| format!("Data[{index}] := 16#{word};\n")).collect();
+        let (words, length, call) = (words.concat(), self.length, self.call);
+        let text = format!("{words}Management[2] := 30; (* 3 s *)\nManagement[3] := {length};\n{call}\n");
         text
     }
 }

@@ -52,7 +52,8 @@ async fn the_script_of_pycomm3_runs_against_the_simulator_and_ciplinks_adapter()
     ] {
         let ended = python(&code(config, Dialect::Pycomm3)).await;
         assert_eq!(ended.code, 0, "{what}: {ended:?}");
-        let hex: String = expected.iter().map(|byte| format!(" {byte:02x}")).collect();
+        let hex: Vec<_> = expected.iter().map(|byte| format!(" {byte:02x}")).collect();
+        let hex = hex.concat();
         let line = format!("what's it called? {:02x}{hex}", expected.len());
         assert_eq!(ended.stdout.trim_end(), line, "{what}: {ended:?}");
     }
@@ -101,7 +102,8 @@ async fn the_command_line_runs_in_a_shell() {
         let ended = run(shell, "the line").await;
         assert_eq!(ended.code, 0, "{text}{ended:?}");
         let data = ended.json()["ResData"].as_str().expect("data").to_owned();
-        let hex: String = name.iter().map(|byte| format!("{byte:02x}")).collect();
+        let hex: Vec<_> = name.iter().map(|byte| format!("{byte:02x}")).collect();
+        let hex = hex.concat();
         assert_eq!(data, format!("{:02x}{hex}", name.len()), "{ended:?}");
     }
 }
