@@ -47,6 +47,7 @@ pub(super) fn Found(props: &FoundProps) -> Html {
         <section class="code-found" aria-label={tr!("found.title")}>
             { head(desk, entries, is_reading, &props.on_deed) }
             { aim(&desk.target, entries, &props.on_deed) }
+            { rest(desk, &props.on_line) }
             if entries.is_empty() {
                 { nothing(is_reading) }
             } else {
@@ -55,7 +56,6 @@ pub(super) fn Found(props: &FoundProps) -> Html {
                     <button type="button" class="button" onclick={on_whole}>{ tr!("found.show_more", count = entries.len()) }</button>
                 }
             }
-            { rest(desk, &props.on_line) }
             if !entries.is_empty() {
                 <SaveBar entries={entries.clone()} on_deed={props.on_deed.clone()} on_saved={props.on_saved.clone()} />
             }
