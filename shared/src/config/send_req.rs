@@ -268,7 +268,7 @@ const fn request_code() -> i64 {
     14
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes references; on wasm32 it is no finding")]
 const fn is_request_code(code: &i64) -> bool {
     *code == request_code()
 }
@@ -277,7 +277,7 @@ const fn exchange_type() -> i64 {
     1
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes references; on wasm32 it is no finding")]
 const fn is_exchange_type(code: &i64) -> bool {
     *code == exchange_type()
 }
