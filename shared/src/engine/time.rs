@@ -15,7 +15,7 @@ impl Instant {
     /// A time that does not come.
     pub const NEVER: Self = Self(u64::MAX);
 
-    /// The end of a time limit in ms; [`FOR_EVER`](crate::plan::limits::FOR_EVER) has none.
+    /// The end of a time limit in ms; [`FOR_EVER`] has none.
     #[must_use]
     pub fn deadline(self, ms: u32) -> Self {
         if ms == FOR_EVER { Self::NEVER } else { self + Millis::from(ms) }
