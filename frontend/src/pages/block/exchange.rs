@@ -92,20 +92,23 @@ fn sent_as(plan: &MessagePlan, profile: Profile) -> AttrValue {
 fn download(props: &ExchangeProps) -> Html {
     match props.subject.id {
         DeckId::Stored(id) if props.subject.online && props.has_run => html! { <>
-            { data_link(id) }
+            { other_ways(id) }
             <a class="download" href={format!("/office/history/{id}")} data-test="history">{ tr!("bytes.history") }</a>
             <a class="download" href={rest::capture(id)} download="" title={tr!("bytes.download_title")} data-test="pcapng">
                 { tr!("bytes.download") }
             </a>
         </> },
-        DeckId::Stored(id) if props.subject.online => data_link(id),
+        DeckId::Stored(id) if props.subject.online => other_ways(id),
         _ => html! {},
     }
 }
 
-/// Field by field: in the office, which has room for reading types.
-fn data_link(id: BlockId) -> Html {
-    html! { <a class="download" href={format!("/office/data/{id}")} data-test="data">{ tr!("bytes.data") }</a> }
+/// As code of a controller, and field by field: in the documents that have room for it.
+fn other_ways(id: BlockId) -> Html {
+    html! { <>
+        <a class="download" href={format!("/code/{id}")} data-test="code">{ tr!("bytes.code") }</a>
+        <a class="download" href={format!("/office/data/{id}")} data-test="data">{ tr!("bytes.data") }</a>
+    </> }
 }
 
 /// Whether an exchange cannot be that of the newest run, which it is fetched after.
