@@ -6,7 +6,7 @@ mod blocks;
 #[path = "dialects/comments.rs"]
 mod comments;
 
-use cipdeck_shared::code::{Code, Dialect, Found, Grade, Language, Options, export, import};
+use cipdeck_shared::code::{Code, Dialect, Found, Grade, Kind, Language, Options, convert, export, import};
 use cipdeck_shared::config::{BlockConfig, MsgCipGeneric};
 use cipdeck_shared::plan::{MessagePlan, Severity};
 use proptest::prelude::*;
@@ -119,6 +119,33 @@ proptest! {
     }
 }
 
+/// Wherever a text has a number, any other may stand.
+#[test]
+fn no_number_ends_an_import_or_what_follows_it() {
+    let extremes = [
+        "-9223372036854775808",
+        "18446744073709551615",
+        "170141183460469231731687303715884105727",
+        "99999999999999999999999999999999999999999999",
+    ];
+    for dialect in Dialect::ALL {
+        let text = export(&ramp(), dialect, &options(false)).text;
+        let mut rest = 0;
+        while let Some(start) = text[rest..].find(|c: char| c.is_ascii_digit()).map(|at| rest + at) {
+            let end = text[start..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |at| start + at);
+            for extreme in extremes {
+                let other = [&text[..start], extreme, &text[end..]].concat();
+                for found in import(&other, Some(dialect)).blocks {
+                    for kind in Kind::ALL {
+                        let _ = convert(&found.config, kind);
+                    }
+                }
+            }
+            rest = end;
+        }
+    }
+}
+
 /// As it is typed by an engineer: a drive's ramp.
 fn ramp() -> BlockConfig {
     let mut config = MsgCipGeneric::product_name("4,192.168.1.100");
@@ -137,11 +164,8 @@ fn one_message_in_every_dialect_as_a_table() {
     let sent = sends(&block).expect("a message");
     println!("\n| dialect | bytes | target | timeouts | losses |\n| --- | --- | --- | --- | --- |");
     for dialect in Dialect::ALL {
-        let languages: &[bool] = if dialect.kind() == cipdeck_shared::code::Kind::MsgCipGeneric {
-            &[false]
-        } else {
-            &[false, true]
-        };
+        let languages: &[bool] =
+            if dialect.kind() == Kind::MsgCipGeneric { &[false] } else { &[false, true] };
         for il in languages {
             let code = export(&block, dialect, &options(*il));
             let found = back(&code, dialect, None).unwrap_or_else(|why| panic!("{dialect}: {why}"));

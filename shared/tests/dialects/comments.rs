@@ -24,7 +24,7 @@ pub(crate) fn without_comments(dialect: Dialect, text: &str) -> String {
         Dialect::Rust => Rules { line: &["//"], block: &[("/*", "*/")], quotes: &['"'], escape: '\\' },
         Dialect::Pycomm3 => Rules { line: &["#"], block: &[], quotes: &['\'', '"'], escape: '\\' },
         Dialect::Cli => Rules { line: &["#"], block: &[], quotes: &['\'', '"'], escape: '\0' },
-        Dialect::Hex => Rules { line: &["#"], block: &[], quotes: &[], escape: '\0' },
+        Dialect::Hex => Rules { line: &["#", "//"], block: &[], quotes: &[], escape: '\0' },
     };
     let mut plain = String::new();
     let mut rest = text;

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::literal::Literal;
+use super::literal::{Literal, SIZES};
 use super::memory::Memory;
 use super::syntax::{Call, Expression};
 
@@ -16,12 +16,12 @@ const MAX_WORK: u32 = 10_000;
 impl Expression<'_> {
     /// A whole number, without looking at variables.
     pub(in crate::code) fn integer(&self) -> Option<i128> {
-        Work { memory: None, left: MAX_WORK }.integer(self, 0)
+        Work { memory: None, left: MAX_WORK }.integer(self, 0).filter(|value| SIZES.contains(value))
     }
 
     /// A whole number; variables are what they hold.
     pub(in crate::code) fn integer_in(&self, memory: &Memory<'_, '_>) -> Option<i128> {
-        Work { memory: Some(memory), left: MAX_WORK }.integer(self, 0)
+        Work { memory: Some(memory), left: MAX_WORK }.integer(self, 0).filter(|value| SIZES.contains(value))
     }
 
     /// TRUE or FALSE, also 1 or 0; variables are what they hold.

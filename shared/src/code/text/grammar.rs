@@ -363,7 +363,8 @@ fn bounds<'t, 'a: 't>(input: &mut Input<'t, 'a>) -> Parsed<((i128, i128), Option
     let token = input.peek_token();
     let slipped = token.filter(|token| token.lexeme == Lexeme::Number).and_then(|token| {
         let (low, high) = token.text.split_once('.')?;
-        Some(((low.parse().ok()?, high.parse().ok()?), Some(token.place)))
+        let whole = |digits: &str| digits.parse::<i64>().ok().map(i128::from);
+        Some(((whole(low)?, whole(high)?), Some(token.place)))
     });
     if let Some(bounds) = slipped {
         input.next_token();

@@ -4,6 +4,9 @@ use alloc::string::{String, ToString};
 
 use crate::code::remark::RemarkKind;
 
+/// The whole numbers of controllers: 64 bits, with a sign or without.
+pub(super) const SIZES: core::ops::Range<i128> = -(1 << 63)..1 << 64;
+
 /// A constant as it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::code) enum Literal {
@@ -99,7 +102,9 @@ fn read_plain(text: &str) -> Result<Literal, RemarkKind> {
         let value: f64 = digits.parse().map_err(|_| unreadable())?;
         return Ok(Literal::Real(if sign < 0 { -value } else { value }));
     }
-    i128::from_str_radix(digits, radix).map(|value| Literal::Integer(sign * value)).map_err(|_| unreadable())
+    let value = i128::from_str_radix(digits, radix).map(|value| sign * value).ok();
+    let fits = value.filter(|value| SIZES.contains(value));
+    fits.map(Literal::Integer).ok_or_else(|| RemarkKind::Expected("a number of at most 64 bits".to_string()))
 }
 
 /// `3s`, `1m_30s`, `2.5s`: µs.

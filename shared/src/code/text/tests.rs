@@ -144,6 +144,25 @@ fn slips_of_printed_manuals_are_read_and_marked() {
 }
 
 #[test]
+fn whole_numbers_have_64_bits() {
+    let one = Script::read(
+        "a := 18446744073709551615; b := -9223372036854775808; c[18446744073709551615] := a * a;",
+    );
+    assert_eq!(remarks(&one), Vec::<String>::new());
+    let memory = Memory::before(&one, one.items.len());
+    assert_eq!(memory.integer("a"), Some(u64::MAX.into()));
+    assert_eq!(memory.integer("b"), Some(i64::MIN.into()));
+    assert_eq!(memory.integer("c[18446744073709551615]"), None, "a product that no controller holds");
+    let more = Script::read("a := 18446744073709551616;\nb[170141183460469231731687303715884105727] := 1;");
+    let told = remarks(&more);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter().all(|told| told.contains("a number of at most 64 bits is expected here")),
+        "{told:?}"
+    );
+}
+
+#[test]
 fn bombs_are_refused_or_bounded() {
     let deep = [
         "(".repeat(100_000),
