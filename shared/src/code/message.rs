@@ -11,6 +11,7 @@ use crate::table;
 
 use super::Code;
 use super::change::{Change, Grade, Why};
+use super::header::harmless;
 
 /// A block whose request is known.
 pub(super) struct Message<'a> {
@@ -72,6 +73,20 @@ impl<'a> Message<'a> {
     pub(super) fn class_words(&self) -> String {
         let class = u16::try_from(self.config.app_cfg.class).unwrap_or(0);
         format!("{class} {}", table::class(class).map_or("", |entry| entry.name)).trim_end().to_string()
+    }
+
+    /// What it is and what it sends: the comments at the head of a section of Structured Text.
+    pub(super) fn about(&self) -> [String; 2] {
+        let app = &self.config.app_cfg;
+        let words = harmless(&format!(
+            "{}: service {}, class {}, instance {}, attribute {}",
+            self.config.name,
+            self.service_words(),
+            self.class_words(),
+            app.instance,
+            app.attribute,
+        ));
+        [format!("(* {words} *)"), format!("(* request {} *)", spaced(self.plan.bytes()))]
     }
 
     /// What a dialect does not tell, beside what only itself knows.

@@ -9,7 +9,7 @@ use super::fields::{Fields, Way};
 use crate::code::Code;
 use crate::code::change::{Change, Grade, Why};
 use crate::code::header::harmless;
-use crate::code::message::{Message, Tells, spaced};
+use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
 use crate::code::text::quoted;
 use crate::config::{BlockConfig, CONTROLLER_HOPS, Endpoint, Host};
@@ -84,17 +84,9 @@ impl Section<'_> {
     }
 
     fn about(&self, out: &mut String) {
-        let app = &self.message.config.app_cfg;
-        let words = harmless(&format!(
-            "{}: service {}, class {}, instance {}, attribute {}",
-            self.message.config.name,
-            self.message.service_words(),
-            self.message.class_words(),
-            app.instance,
-            app.attribute,
-        ));
-        line(out, &format!("(* {words} *)"));
-        line(out, &format!("(* request {} *)", spaced(self.message.plan.bytes())));
+        for about in self.message.about() {
+            line(out, &about);
+        }
         line(
             out,
             "(* The variables are entered in the table of local variables; the program begins after END_VAR. *)",

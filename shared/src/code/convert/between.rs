@@ -3,19 +3,15 @@
 use alloc::string::ToString;
 use alloc::vec::Vec;
 
-use super::to_words::head;
+use super::to_words::{addressed, head};
 use crate::code::change::{Change, Grade, Why};
-use crate::config::{
-    AddressDevice, AddressMode, Endpoint, PlcAddress, SendReq, SendReqForm, Target, bytes_of, words_of,
-    write_words,
-};
+use crate::config::{Endpoint, PlcAddress, SendReq, SendReqForm, Target, bytes_of, words_of, write_words};
 use crate::plan::MessagePlan;
 
 /// Moves the request.
 pub(super) fn convert(words: &SendReq, form: SendReqForm, changes: &mut Vec<Change>) -> SendReq {
     let new = SendReq::new(form, &words.name);
     let mut new = SendReq {
-        name: new.name,
         kind: new.kind,
         dialect: new.dialect,
         request_code: new.request_code,
@@ -29,12 +25,7 @@ pub(super) fn convert(words: &SendReq, form: SendReqForm, changes: &mut Vec<Chan
         Target::BuiltIn => Endpoint::of_ip([0; 4]),
     };
     if let Ok(place) = words.address.parse::<PlcAddress>() {
-        let mode = if connected { AddressMode::Connected } else { AddressMode::Unconnected };
-        let device = match form {
-            SendReqForm::Etc100 => Some(AddressDevice::Dotted(endpoint.clone())),
-            SendReqForm::Etc101 => None,
-            SendReqForm::DataExch => Some(AddressDevice::Braced(endpoint.clone(), mode)),
-        };
+        let device = addressed(form, endpoint.clone(), connected);
         new.address = PlcAddress { function: None, device, ..place }.to_string();
         changes.push(Change::new(&"Address", &words.address, &new.address, Grade::Carried, Why::ModulePlace));
     }

@@ -71,6 +71,7 @@ fn what_the_words_cannot_say_is_told() {
 fn a_block_with_errors_is_converted_as_far_as_it_can_be_read_and_says_so() {
     let mut msg = MsgCipGeneric::product_name("4,10.0.0.1");
     msg.app_cfg.service = 300;
+    msg.res_data_size = i64::MAX;
     let converted = convert(&msg.into(), Kind::DataExch);
     assert_eq!(words(&converted).name, "product-name");
     assert!(

@@ -3,6 +3,7 @@
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
+use super::to_words::REPLY_HEAD;
 use crate::code::change::{Change, Grade, Why};
 use crate::config::{MsgCipGeneric, PlcAddress, SendReq, Target, write_hex};
 use crate::plan::MessagePlan;
@@ -10,9 +11,6 @@ use crate::plan::limits::{
     CONN_MSG_TIMEOUT, MAX_REQUEST_DATA, MAX_RESPONSE_DATA, TimeoutRange, UCMM_TIMEOUT,
 };
 use crate::wire::{Epath, LogicalKind, Segment};
-
-/// Bytes of a reply before its data, without additional status.
-const REPLY_HEAD: i64 = 4;
 
 /// Reads the words. Without a plan nothing of them is known: the block has errors.
 pub(super) fn convert(words: &SendReq, changes: &mut Vec<Change>) -> MsgCipGeneric {

@@ -15,14 +15,15 @@ use crate::plan::MessagePlan;
 const STEP: u32 = 100;
 
 /// Bytes of a reply before its data, without additional status.
-const REPLY_HEAD: i64 = 4;
+pub(super) const REPLY_HEAD: i64 = 4;
 
 /// Makes the words. Without a plan there are none: the block has errors.
 pub(super) fn convert(msg: &MsgCipGeneric, form: SendReqForm, changes: &mut Vec<Change>) -> SendReq {
     let mut words = SendReq::new(form, &msg.name);
     common(msg, &mut words);
     unsaid(msg, changes);
-    words.received_data_size = ((msg.res_data_size + REPLY_HEAD + 1) / 2).max(2);
+    // A size with a finding may be any number.
+    words.received_data_size = (msg.res_data_size.saturating_add(REPLY_HEAD + 1) / 2).max(2);
     if msg.res_data_size % 2 != 0 {
         let (from, to) = (msg.res_data_size, words.received_data_size);
         changes.push(Change::new(
@@ -111,14 +112,19 @@ fn device(target: &Target, changes: &mut Vec<Change>) -> Endpoint {
     }
 }
 
-/// Where the module is nobody knows: rack 0, module 2, channel 0, as in the examples.
-fn address(form: SendReqForm, endpoint: Endpoint, connected: bool) -> String {
+/// The device in an address, if it stands there.
+pub(super) fn addressed(form: SendReqForm, endpoint: Endpoint, connected: bool) -> Option<AddressDevice> {
     let mode = if connected { AddressMode::Connected } else { AddressMode::Unconnected };
-    let device = match form {
+    match form {
         SendReqForm::Etc100 => Some(AddressDevice::Dotted(endpoint)),
         SendReqForm::Etc101 => None,
         SendReqForm::DataExch => Some(AddressDevice::Braced(endpoint, mode)),
-    };
+    }
+}
+
+/// Where the module is nobody knows: rack 0, module 2, channel 0, as in the examples.
+fn address(form: SendReqForm, endpoint: Endpoint, connected: bool) -> String {
+    let device = addressed(form, endpoint, connected);
     PlcAddress { function: None, xway: None, rack: 0, module: 2, channel: 0, device }.to_string()
 }
 
