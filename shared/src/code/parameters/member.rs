@@ -31,6 +31,10 @@ pub(super) enum Member {
 /// By its name, without accents, case, spaces and what stands before a dot.
 pub(super) fn member(name: &str) -> Option<Member> {
     let name = name.rsplit('.').next().unwrap_or(name);
+    // `MemberId[0] := 1` is an assignment of a program.
+    if name.contains(":=") {
+        return None;
+    }
     let plain: String = name.chars().filter_map(plain).collect();
     if let Some(at) = plain.strip_prefix("memberid").and_then(|at| at.parse().ok()) {
         return (at < 3).then_some(Member::IdAt(at));

@@ -18,8 +18,12 @@ use super::{Found, Imported};
 use crate::config::{MsgCipGeneric, read_hex, read_number, write_hex};
 use crate::plan::Severity;
 
-/// Whether a line is a row of such a table: its first cell names a member, or it is a head.
+/// Whether a line is a row of such a table: its first cell names a member, or it is a head. A comment of a program, such
+/// as `(* status: … *)`, is none.
 pub(super) fn is_row(line: &str) -> bool {
+    if line.trim_start().starts_with("(*") {
+        return false;
+    }
     let cells = cells(line);
     let named = cells.first().is_some_and(|name| member(name).is_some());
     cells.len() > 1 && (named || head_of(&cells).is_some())

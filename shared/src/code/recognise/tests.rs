@@ -97,6 +97,13 @@ done := u1.Done;
 }
 
 #[test]
+fn comments_and_assignments_with_a_comment_are_no_rows_of_a_table() {
+    let text = "(* status: service 14 *)\napp.MemberCnt := 1;\napp.MemberId[0] := 1; (* 16#01 *)\nm(IN := start, AppCfg := app);\n";
+    let lines = "(* status: service 14 *) | app.MemberCnt := 1; | app.MemberId[0] := 1; (* 16#01 *) | m(IN := start, AppCfg := app);";
+    assert_eq!(told(text), [format!("1 ccw-st: {lines}")]);
+}
+
+#[test]
 fn instruction_list_is_control_experts() {
     let text = "words : ARRAY[0..4] OF INT;\nLD ADDR('0.2.0.10.0.0.1')\nSEND_REQ 16#0E, words, tab, answer\n";
     assert_eq!(told(text).len(), 1);
