@@ -75,8 +75,15 @@ impl<'a> Message<'a> {
         format!("{class} {}", table::class(class).map_or("", |entry| entry.name)).trim_end().to_string()
     }
 
-    /// What it is and what it sends: the comments at the head of a section of Structured Text.
-    pub(super) fn about(&self) -> [String; 2] {
+    /// The request without member segments, for the dialects that have none.
+    pub(super) fn bytes_without_members(&self) -> Vec<u8> {
+        let mut config = self.config.clone();
+        config.app_cfg.member_cnt = 0;
+        MessagePlan::parse(&config).0.map_or_else(Vec::new, |plan| plan.bytes().to_vec())
+    }
+
+    /// What it is and what of it is sent: the comments at the head of a section of Structured Text.
+    pub(super) fn about(&self, request: &[u8]) -> [String; 2] {
         let app = &self.config.app_cfg;
         let words = harmless(&format!(
             "{}: service {}, class {}, instance {}, attribute {}",
@@ -86,7 +93,7 @@ impl<'a> Message<'a> {
             app.instance,
             app.attribute,
         ));
-        [format!("(* {words} *)"), format!("(* request {} *)", spaced(self.plan.bytes()))]
+        [format!("(* {words} *)"), format!("(* request {} *)", spaced(request))]
     }
 
     /// What a dialect does not tell, beside what only itself knows.

@@ -84,7 +84,7 @@ impl Section<'_> {
     }
 
     fn about(&self, out: &mut String) {
-        for about in self.message.about() {
+        for about in self.message.about(self.message.plan.bytes()) {
             line(out, &about);
         }
         line(

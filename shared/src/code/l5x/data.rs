@@ -5,11 +5,52 @@ use alloc::vec::Vec;
 
 use roxmltree::Node;
 
-/// `Name[3]`: the tag, and the element that is meant.
-pub(super) fn element(text: &str) -> Option<(&str, usize)> {
-    let Some((name, rest)) = text.split_once('[') else { return Some((text, 0)) };
-    let index = rest.strip_suffix(']')?.parse().ok()?;
-    Some((name, index))
+/// `Name.member[3]`: the tag, what of it, and the element that is meant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Operand<'t> {
+    pub(super) tag: &'t str,
+    members: Vec<&'t str>,
+    pub(super) index: usize,
+}
+
+impl<'t> Operand<'t> {
+    /// `None`: an index is no number, or not the last thing.
+    pub(super) fn read(text: &'t str) -> Option<Self> {
+        let (names, index) = match text.split_once('[') {
+            Some((names, rest)) => (names, rest.strip_suffix(']')?.parse().ok()?),
+            None => (text, 0),
+        };
+        let mut names = names.split('.');
+        Some(Self { tag: names.next()?, members: names.collect(), index })
+    }
+
+    /// What it is where its tag is an alias for that. `None`: both have an index.
+    pub(super) fn behind(self, other: Self) -> Option<Self> {
+        let index = match (self.index, other.index) {
+            (index, 0) => index,
+            // An element has no members here.
+            (0, index) if self.members.is_empty() => index,
+            _ => return None,
+        };
+        let members = other.members.into_iter().chain(self.members).collect();
+        Some(Self { tag: other.tag, members, index })
+    }
+}
+
+/// The part of a tag that an operand names: the tag itself, or a member in its decorated data. An error says what
+/// of it is not known.
+pub(super) fn member<'a, 'i>(tag: Node<'a, 'i>, operand: &Operand<'_>) -> Result<Node<'a, 'i>, String> {
+    if operand.members.is_empty() {
+        return Ok(tag);
+    }
+    let decorated = tag.children().find(|data| data.attribute("Format") == Some("Decorated"));
+    let mut part = decorated.and_then(|data| data.first_element_child()).ok_or("no data of its members")?;
+    for name in &operand.members {
+        let is_it =
+            |node: &Node<'_, '_>| node.attribute("Name").is_some_and(|it| it.eq_ignore_ascii_case(name));
+        part = part.children().find(is_it).ok_or_else(|| alloc::format!("no member {name}"))?;
+    }
+    Ok(part)
 }
 
 /// Bytes of one element of a type that has no padding.
@@ -23,28 +64,31 @@ pub(super) fn element_size(data_type: &str) -> Option<usize> {
     })
 }
 
-/// Bytes of a whole tag: one element, or as many as its dimensions say.
-pub(super) fn size(tag: Node<'_, '_>) -> Option<usize> {
-    let size = element_size(tag.attribute("DataType")?)?;
+/// Bytes of a whole tag or member: one element, or as many as its dimensions say.
+pub(super) fn size(whole: Node<'_, '_>) -> Option<usize> {
+    let size = element_size(whole.attribute("DataType")?)?;
     let mut elements: usize = 1;
-    for dimension in tag.attribute("Dimensions").unwrap_or_default().split_whitespace() {
+    let dimensions = whole.attribute("Dimensions").unwrap_or_default();
+    for dimension in dimensions.split([' ', ',']).filter(|dimension| !dimension.is_empty()) {
         elements = elements.checked_mul(dimension.parse().ok()?)?;
     }
     elements.checked_mul(size)
 }
 
-/// All bytes of a tag, as its export shows them: decorated, as L5K, or raw. An error says what of it cannot be read.
-pub(super) fn bytes(tag: Node<'_, '_>) -> Result<Vec<u8>, String> {
-    let name = tag.attribute("DataType").unwrap_or_default();
+/// All bytes of a tag, or of a member of it, as the export shows them: decorated, as L5K, or raw. An error says what of
+/// it cannot be read.
+pub(super) fn bytes(tag: Node<'_, '_>, whole: Node<'_, '_>) -> Result<Vec<u8>, String> {
+    let name = whole.attribute("DataType").unwrap_or_default();
     if element_size(name).is_none() {
         return Err(alloc::format!("data of type {name}"));
     }
     let formats = || tag.children().filter(|child| child.has_tag_name("Data"));
     let format = |format: Option<&str>| formats().find(|data| data.attribute("Format") == format);
-    if let Some(decorated) = format(Some("Decorated")) {
+    let decorated = if whole == tag { format(Some("Decorated")) } else { Some(whole) };
+    if let Some(decorated) = decorated {
         return decorated
             .descendants()
-            .filter(|node| node.has_tag_name("Element") || node.has_tag_name("DataValue"))
+            .filter(|node| ["Element", "DataValue", "DataValueMember"].contains(&node.tag_name().name()))
             .map(|node| node.attribute("Value").unwrap_or_default())
             .map(|value| literal(value, name).ok_or_else(|| value.to_string()))
             .collect::<Result<Vec<Vec<u8>>, String>>()
@@ -123,9 +167,15 @@ mod tests {
     }
 
     #[test]
-    fn an_element_is_a_tag_and_an_index() {
-        assert_eq!(element("Req[3]"), Some(("Req", 3)));
-        assert_eq!(element("Req"), Some(("Req", 0)));
-        assert_eq!((element("Req[i]"), element("Req[1,2]"), element("Req[0].x")), (None, None, None));
+    fn an_operand_is_a_tag_its_members_and_an_index() {
+        let read = |text: &'static str| Operand::read(text).map(|it| (it.tag, it.members, it.index));
+        assert_eq!(read("Req[3]"), Some(("Req", alloc::vec![], 3)));
+        assert_eq!(read("Cmd.Data[2]"), Some(("Cmd", alloc::vec!["Data"], 2)));
+        assert_eq!((read("Req[i]"), read("Req[1,2]"), read("Req[0].x")), (None, None, None));
+        let behind = |text, alias| Operand::read(text).unwrap().behind(Operand::read(alias).unwrap());
+        assert_eq!(behind("A[3]", "Req"), Operand::read("Req[3]"));
+        assert_eq!(behind("A", "Req.Data[3]"), Operand::read("Req.Data[3]"));
+        assert_eq!(behind("A.Data[1]", "Req"), Operand::read("Req.Data[1]"));
+        assert_eq!(behind("A[3]", "Req[2]"), None);
     }
 }

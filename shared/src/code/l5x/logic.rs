@@ -1,9 +1,12 @@
-//! What the logic of an export does with a `MESSAGE`: rungs as neutral text, and lines of Structured Text.
+//! What the logic of an export does with a `MESSAGE`: rungs as neutral text, and statements of Structured Text.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use roxmltree::{Document, Node};
+
+use super::project::{Scope, scope};
+use super::structured::Statements;
 
 /// An instruction of a rung with its operands, or an assignment of Structured Text as `MOV`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,30 +15,38 @@ pub(super) struct Instruction {
     pub(super) operands: Vec<String>,
 }
 
-/// A rung, or a line of Structured Text.
+/// A rung, or a statement of Structured Text.
 #[derive(Clone, Debug)]
 pub(super) struct Rung {
     /// Its first byte in the document.
     pub(super) at: usize,
+    /// Whose tags its names are.
+    pub(super) scope: Scope,
     pub(super) instructions: Vec<Instruction>,
 }
 
 /// All logic of a document, in its order.
 pub(super) fn rungs(document: &Document<'_>) -> Vec<Rung> {
-    let text = |node: &Node<'_, '_>| -> String { node.children().filter_map(|child| child.text()).collect() };
-    let nodes = document.descendants();
-    nodes
-        .filter_map(|node| {
-            let instructions = if node.has_tag_name("Text") && is_in(node, "Rung") {
-                instructions(&text(&node))
-            } else if node.has_tag_name("Line") && is_in(node, "STContent") {
-                statements(&text(&node))
-            } else {
-                return None;
+    let mut rungs = Vec::new();
+    for node in document.descendants() {
+        if node.has_tag_name("Text") && is_in(node, "Rung") {
+            let instructions = instructions(&text_of(node));
+            rungs.push(Rung { at: node.range().start, scope: scope(node), instructions });
+        } else if node.has_tag_name("STContent") {
+            let mut statements = Statements::default();
+            for line in node.children().filter(|line| line.has_tag_name("Line")) {
+                statements.line(line.range().start, &text_of(line));
+            }
+            let home = scope(node);
+            let rung = |(at, statement): (usize, String)| {
+                let instructions = of_statement(&statement);
+                // `END_IF` is none.
+                (!instructions.is_empty()).then(|| Rung { at, scope: home.clone(), instructions })
             };
-            Some(Rung { at: node.range().start, instructions })
-        })
-        .collect()
+            rungs.extend(statements.finish().into_iter().filter_map(rung));
+        }
+    }
+    rungs
 }
 
 impl Rung {
@@ -54,6 +65,15 @@ impl Rung {
             _ => None,
         })
     }
+
+    /// The Add-On Instruction that a message is given to, which then sends it.
+    pub(super) fn gives(&self, message: &str) -> Option<&str> {
+        let given = |instruction: &&Instruction| {
+            instruction.name != "MSG"
+                && instruction.operands.iter().any(|operand| operand.eq_ignore_ascii_case(message))
+        };
+        self.instructions.iter().find(given).map(|instruction| instruction.name.as_str())
+    }
 }
 
 impl Instruction {
@@ -61,6 +81,10 @@ impl Instruction {
     pub(super) fn is(&self, name: &str, operand: &str) -> bool {
         self.name == name && self.operands.first().is_some_and(|first| first.eq_ignore_ascii_case(operand))
     }
+}
+
+fn text_of(node: Node<'_, '_>) -> String {
+    node.children().filter_map(|child| child.text()).collect()
 }
 
 fn is_in(node: Node<'_, '_>, name: &str) -> bool {
@@ -103,17 +127,13 @@ fn operands(text: &str) -> (Vec<String>, usize) {
     (operands, text.len())
 }
 
-/// `b.c := 1; MSG(b);`
-fn statements(text: &str) -> Vec<Instruction> {
-    let code = text.split_once("//").map_or(text, |(code, _)| code);
-    let statement = |statement: &str| match statement.split_once(":=") {
-        Some((to, value)) => {
-            let operands = [value, to].map(|text| text.trim().to_string()).to_vec();
-            alloc::vec![Instruction { name: "MOV".into(), operands }]
-        }
-        None => instructions(statement),
-    };
-    code.split(';').flat_map(statement).collect()
+/// `b.c := 1` or `MSG(b)`, also behind `IF … THEN`.
+fn of_statement(statement: &str) -> Vec<Instruction> {
+    let Some((to, value)) = statement.split_once(":=") else { return instructions(statement) };
+    // What stands before the variable is a keyword or the label of a CASE.
+    let to = to.trim().rsplit(|c: char| c.is_whitespace() || c == ':').next().unwrap_or_default();
+    let operands = [value.trim(), to].map(ToString::to_string).to_vec();
+    alloc::vec![Instruction { name: "MOV".into(), operands }]
 }
 
 #[cfg(test)]
@@ -140,11 +160,12 @@ mod tests {
     }
 
     #[test]
-    fn an_assignment_is_a_move() {
-        let found = statements("b.UnconnectedTimeout := 3000000; MSG(b); // c.d := 1;");
-        assert_eq!(found.len(), 2);
-        let rung = Rung { at: 0, instructions: found };
-        assert!(rung.sends("B"));
-        assert_eq!(rung.moves_to("B").collect::<Vec<_>>(), [("UnconnectedTimeout", "3000000")]);
+    fn an_assignment_is_a_move_wherever_it_stands() {
+        for statement in ["b.c := 3", "IF a THEN b.c := 3", "1: b.c:=3", "2:b.c := 3", "ELSE\n b.c := 3"] {
+            let rung = Rung { at: 0, scope: Scope::Controller, instructions: of_statement(statement) };
+            assert_eq!(rung.moves_to("B").collect::<Vec<_>>(), [("c", "3")], "{statement}");
+        }
+        let rung = Rung { at: 0, scope: Scope::Controller, instructions: of_statement("IF a THEN MSG(b)") };
+        assert!(rung.sends("B") && rung.gives("b").is_none());
     }
 }

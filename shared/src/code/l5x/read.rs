@@ -10,8 +10,10 @@ use roxmltree::{Document, Error, Node, ParsingOptions};
 use super::super::dialect::Dialect;
 use super::super::remark::{Remark, RemarkKind};
 use super::super::{Found, Imported};
-use super::logic::{self, Rung};
+use super::logic::Rung;
 use super::parameters::Parameters;
+use super::project::Project;
+use crate::plan::Severity;
 
 /// Nodes of a document.
 const MAX_NODES: u32 = 100_000;
@@ -27,142 +29,93 @@ pub(in super::super) fn import(text: &str) -> Imported {
             return imported;
         }
     };
-    let lines = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
-    let lines = core::iter::once(0).chain(lines).collect();
-    Project { rungs: logic::rungs(&document), document: &document, text, lines }.import(&mut imported);
+    messages(&Project::new(&document, text), &mut imported);
     imported
 }
 
-/// A document, and its logic.
-pub(super) struct Project<'a, 'i> {
-    pub(super) document: &'a Document<'i>,
-    pub(super) rungs: Vec<Rung>,
-    text: &'a str,
-    /// Where its lines begin.
-    lines: Vec<usize>,
+fn messages(project: &Project<'_, '_>, imported: &mut Imported) {
+    let mut used = BTreeSet::new();
+    for tag in project.tags().filter(|tag| is_message(*tag)) {
+        used.insert(tag.id().get_usize());
+        let parameters = tag.descendants().find(|node| node.has_tag_name("MessageParameters"));
+        let Some(parameters) = parameters else {
+            imported.remarks.push(project.error(tag, RemarkKind::Missing("MessageParameters".into())));
+            continue;
+        };
+        match parameters.attribute("MessageType").unwrap_or_default() {
+            "CIP Generic" => {}
+            kind => {
+                let words = format!(
+                    "{}: a message of type {:?} is left out; only CIP Generic is one for any object",
+                    tag.attribute("Name").unwrap_or_default(),
+                    kind
+                );
+                imported.remarks.push(project.error(parameters, RemarkKind::Told(words)));
+                continue;
+            }
+        }
+        let mut reading = Parameters::new(project, tag, parameters);
+        let config = reading.config();
+        used.extend(reading.used.iter().map(|tag| tag.get_usize()));
+        let range = tag.range();
+        let [first, last] = [range.start, range.end].map(|at| project.place(at).0);
+        imported.blocks.push(Found {
+            config: config.into(),
+            dialect: Dialect::L5x,
+            lines: first..last + 1,
+            remarks: reading.remarks,
+        });
+    }
+    rest(project, imported, &used);
 }
 
-impl<'a, 'i> Project<'a, 'i> {
-    fn import(&self, imported: &mut Imported) {
-        let mut used = BTreeSet::new();
-        for tag in self.tags().filter(|tag| is_message(*tag)) {
-            used.insert(tag.id().get_usize());
-            let parameters = tag.descendants().find(|node| node.has_tag_name("MessageParameters"));
-            let Some(parameters) = parameters else {
-                imported.remarks.push(self.error(tag, RemarkKind::Missing("MessageParameters".into())));
-                continue;
-            };
-            match parameters.attribute("MessageType").unwrap_or_default() {
-                "CIP Generic" => {}
-                kind => {
-                    let words = format!(
-                        "{}: a message of type {:?} is left out; only CIP Generic is one for any object",
-                        tag.attribute("Name").unwrap_or_default(),
-                        kind
-                    );
-                    imported.remarks.push(self.error(parameters, RemarkKind::Told(words)));
-                    continue;
-                }
-            }
-            let mut reading = Parameters::new(self, tag, parameters);
-            let config = reading.config();
-            used.extend(reading.used.iter().map(|tag| tag.get_usize()));
-            let range = tag.range();
-            let [first, last] = [range.start, range.end].map(|at| self.place(at).0);
-            imported.blocks.push(Found {
-                config: config.into(),
-                dialect: Dialect::L5x,
-                lines: first..last + 1,
-                remarks: reading.remarks,
-            });
-        }
-        self.rest(imported, &used);
+/// What of the document is about something else.
+fn rest(project: &Project<'_, '_>, imported: &mut Imported, used: &BTreeSet<usize>) {
+    let root = project.document.root_element();
+    if imported.blocks.is_empty() && imported.remarks.is_empty() {
+        let words = "no tag of type MESSAGE: there is nothing to read here";
+        imported.remarks.push(project.error(root, RemarkKind::told(&words)));
+        return;
     }
+    let (starting, read) = starting(&project.rungs);
+    let of_messages = |tag: &Node<'_, '_>| {
+        let name = tag.attribute("Name").unwrap_or_default().to_ascii_lowercase();
+        let is_logic = ["BOOL", "TIMER"].contains(&tag.attribute("DataType").unwrap_or_default());
+        used.contains(&tag.id().get_usize()) || is_logic && starting.contains(&name)
+    };
+    let tags = project.tags().filter(|tag| !of_messages(tag)).count();
+    let rungs = project.rungs.len().saturating_sub(read);
+    let mut note = |words: String| {
+        let remark = project.error(root, RemarkKind::Told(words));
+        imported.remarks.push(Remark { severity: Severity::Note, ..remark });
+    };
+    if tags + rungs > 0 {
+        note(format!("{tags} other tags and {rungs} rungs or statements without a MSG are not read"));
+    }
+    let protected = project.document.descendants().filter(|node| node.has_tag_name("EncodedData")).count();
+    if protected > 0 {
+        note(format!("{protected} protected parts cannot be read: what they do with a message is not known"));
+    }
+}
 
-    /// What of the document is about something else.
-    fn rest(&self, imported: &mut Imported, used: &BTreeSet<usize>) {
-        let root = self.document.root_element();
-        if imported.blocks.is_empty() && imported.remarks.is_empty() {
-            let words = "no tag of type MESSAGE: there is nothing to read here";
-            imported.remarks.push(self.error(root, RemarkKind::told(&words)));
-            return;
-        }
-        let (starting, read) = self.starting();
-        let of_messages = |tag: &Node<'_, '_>| {
-            let name = tag.attribute("Name").unwrap_or_default().to_ascii_lowercase();
-            let is_logic = ["BOOL", "TIMER"].contains(&tag.attribute("DataType").unwrap_or_default());
-            used.contains(&tag.id().get_usize()) || is_logic && starting.contains(&name)
-        };
-        let tags = self.tags().filter(|tag| !of_messages(tag)).count();
-        let rungs = self.rungs.len().saturating_sub(read);
-        if tags + rungs > 0 {
-            let words = format!("{tags} other tags and {rungs} rungs or lines without a MSG are not read");
-            let mut remark = self.error(root, RemarkKind::Told(words));
-            remark.severity = crate::plan::Severity::Note;
-            imported.remarks.push(remark);
+/// What the rungs that send name, also by way of a timer, and how many rungs these are.
+fn starting(rungs: &[Rung]) -> (BTreeSet<String>, usize) {
+    let base = |operand: &String| operand.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let names = |rung: &Rung| -> Vec<String> {
+        rung.instructions.iter().flat_map(|it| it.operands.iter().map(base)).collect()
+    };
+    let has = |rung: &Rung, name: &str| rung.instructions.iter().any(|it| it.name == name);
+    let (sending, others): (Vec<&Rung>, Vec<&Rung>) = rungs.iter().partition(|rung| has(rung, "MSG"));
+    let mut starting: BTreeSet<String> = sending.iter().flat_map(|rung| names(rung)).collect();
+    let mut read = sending.len();
+    for rung in others {
+        let timers = rung.instructions.iter().filter(|it| it.name == "TON");
+        if timers.filter_map(|it| it.operands.first()).any(|timer| starting.contains(&base(timer))) {
+            starting.extend(names(rung));
+            read += 1;
         }
     }
-
-    /// What the rungs that send name, also by way of a timer, and how many rungs these are.
-    fn starting(&self) -> (BTreeSet<String>, usize) {
-        let base = |operand: &String| operand.split('.').next().unwrap_or_default().to_ascii_lowercase();
-        let names = |rung: &Rung| -> Vec<String> {
-            rung.instructions.iter().flat_map(|it| it.operands.iter().map(base)).collect()
-        };
-        let has = |rung: &Rung, name: &str| rung.instructions.iter().any(|it| it.name == name);
-        let (sending, others): (Vec<&Rung>, Vec<&Rung>) =
-            self.rungs.iter().partition(|rung| has(rung, "MSG"));
-        let mut starting: BTreeSet<String> = sending.iter().flat_map(|rung| names(rung)).collect();
-        let mut read = sending.len();
-        for rung in others {
-            let timers = rung.instructions.iter().filter(|it| it.name == "TON");
-            if timers.filter_map(|it| it.operands.first()).any(|timer| starting.contains(&base(timer))) {
-                starting.extend(names(rung));
-                read += 1;
-            }
-        }
-        (starting, read)
-    }
-
-    fn tags(&self) -> impl Iterator<Item = Node<'a, 'i>> + use<'a, 'i> {
-        self.document.descendants().filter(|node| node.has_tag_name("Tag"))
-    }
-
-    /// A tag by its name: of the same program, otherwise of the controller. Logix ignores case.
-    pub(super) fn tag(&self, near: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-        let is_it = |tag: &Node<'_, '_>| {
-            tag.has_tag_name("Tag") && tag.attribute("Name").is_some_and(|it| it.eq_ignore_ascii_case(name))
-        };
-        near.parent()?.children().find(is_it).or_else(|| {
-            let is_controllers =
-                |tag: &Node<'_, '_>| tag.ancestors().all(|node| !node.has_tag_name("Program"));
-            self.tags().find(|tag| is_it(tag) && is_controllers(tag))
-        })
-    }
-
-    /// A module of the project.
-    pub(super) fn module(&self, name: &str) -> Option<Node<'a, 'i>> {
-        let is_it = |node: &Node<'_, '_>| {
-            node.has_tag_name("Module")
-                && node.attribute("Name").is_some_and(|it| it.eq_ignore_ascii_case(name))
-        };
-        self.document.descendants().find(is_it)
-    }
-
-    /// An error at a node.
-    pub(super) fn error(&self, node: Node<'_, '_>, what: RemarkKind) -> Remark {
-        let (line, column) = self.place(node.range().start);
-        let excerpt = self.text.get(node.range()).unwrap_or_default();
-        Remark::error(line, column, excerpt, what)
-    }
-
-    /// Line and column of a byte, both from 1.
-    pub(super) fn place(&self, at: usize) -> (usize, usize) {
-        let line = self.lines.partition_point(|start| *start <= at);
-        let start = line.checked_sub(1).and_then(|line| self.lines.get(line)).copied().unwrap_or(0);
-        let column = self.text.get(start..at).unwrap_or_default().chars().count();
-        (line, column + 1)
-    }
+    (starting, read)
 }
 
 fn is_message(tag: Node<'_, '_>) -> bool {

@@ -6,21 +6,27 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::message::{Message, spaced};
+use super::MAX_TARGET_OBJECT;
 use super::path::connection_path;
 use super::xml::{cdata, escaped};
 
 /// The `MESSAGE`.
 pub(super) fn message(message: &Message<'_>, name: &str) -> String {
     let (app, data) = (&message.config.app_cfg, message.data());
+    // Of an instance that is too large nobody knows what is sent.
+    let request = if app.instance > MAX_TARGET_OBJECT {
+        "is not the block's".to_string()
+    } else {
+        spaced(&message.bytes_without_members())
+    };
     let about = format!(
-        "{}: service {}, class {}, instance {} = 16#{:x}, attribute {}; request {}",
+        "{}: service {}, class {}, instance {} = 16#{:x}, attribute {}; request {request}",
         message.config.name,
         message.service_words(),
         message.class_words(),
         app.instance,
         app.instance,
         if app.attribute == 0 { "none".to_string() } else { app.attribute.to_string() },
-        spaced(message.plan.bytes()),
     );
     let source = if data.is_empty() { String::new() } else { format!(" LocalElement=\"{name}_Req[0]\"") };
     // As in exports: a connection that is not kept is not cached; without one there is nothing to say.

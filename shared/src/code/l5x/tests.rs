@@ -196,3 +196,151 @@ fn what_is_no_document_is_told_with_its_place() {
     let deep = alloc::format!("{}{}", "<a>".repeat(90_000), "</a>".repeat(90_000));
     assert_eq!(import(&deep).blocks, []);
 }
+
+/// A document around tags, programs and modules.
+fn document(modules: &str, tags: &str, programs: &str) -> String {
+    alloc::format!(
+        "<RSLogix5000Content><Controller Name=\"Line4\"><Modules>{modules}</Modules><Tags>{tags}</Tags>\
+         <Programs>{programs}</Programs></Controller></RSLogix5000Content>"
+    )
+}
+
+fn generic(name: &str, attributes: &str) -> String {
+    alloc::format!(
+        "<Tag Name=\"{name}\" DataType=\"MESSAGE\"><Data Format=\"Message\"><MessageParameters MessageType=\"CIP Generic\" \
+         ServiceCode=\"16#000e\" ObjectType=\"16#0001\" TargetObject=\"1\" AttributeNumber=\"16#0007\" {attributes}/></Data></Tag>"
+    )
+}
+
+fn said(found: &Found) -> Vec<String> {
+    found.remarks.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn a_name_belongs_to_its_program() {
+    let direct =
+        |name| generic(name, "RequestedLength=\"0\" ConnectedFlag=\"2\" ConnectionPath=\"2, 10.0.0.1\"");
+    let program = |name: &str, tags: &str, routine: &str| {
+        alloc::format!("<Program Name=\"{name}\"><Tags>{tags}</Tags><Routines>{routine}</Routines></Program>")
+    };
+    let rung = |text: &str| {
+        alloc::format!(
+            "<Routine Type=\"RLL\"><RLLContent><Rung><Text>{text}</Text></Rung></RLLContent></Routine>"
+        )
+    };
+    let st = "<Routine Type=\"ST\"><STContent><Line>(* M.UnconnectedTimeout := 9000000;</Line>\
+              <Line>M.UnconnectedTimeout := 8000000; *) // M.UnconnectedTimeout := 7000000;</Line>\
+              <Line>IF go THEN M.UnconnectedTimeout :=</Line><Line> 2000000; MSG(M); END_IF;</Line></STContent></Routine>";
+    let text = document(
+        "",
+        &direct("M"),
+        &[
+            program("P1", &direct("M"), &rung("MOV(1000000,M.UnconnectedTimeout)XIO(M.EN)MSG(M);")),
+            program("P2", &direct("M"), st),
+            program("P3", "", &rung("MOV(3000000,M.UnconnectedTimeout)Drive(Instance,M,Other);")),
+        ]
+        .concat(),
+    );
+    let aoi = "<AddOnInstructionDefinition Name=\"Drive\"><Routines><Routine Type=\"RLL\"><RLLContent><Rung><Text>\
+               MOV(6000000,M.UnconnectedTimeout)MSG(M);</Text></Rung></RLLContent></Routine></Routines></AddOnInstructionDefinition>";
+    let read = import(&text.replace("<Programs>", &alloc::format!("{aoi}<Programs>")));
+    let timing: Vec<(i64, i64)> = read
+        .blocks
+        .iter()
+        .map(|found| found.config.as_msg().unwrap())
+        .map(|config| (config.target_cfg.ucmm_timeout, config.ctrl_cfg.trigger_type))
+        .collect();
+    assert_eq!(timing, [(3_000, 0), (1_000, 1), (2_000, 0)]);
+    let said: Vec<Vec<String>> = read.blocks.iter().map(said).collect();
+    assert!(said[0].len() == 1 && said[0][0].contains("M is given to DRIVE"), "{said:?}");
+    assert_eq!((&said[1], &said[2]), (&Vec::new(), &Vec::new()));
+}
+
+#[test]
+fn a_path_goes_by_way_of_the_projects_modules() {
+    let module = |name: &str, parent: &str, port: &str, ports: &str| {
+        alloc::format!(
+            "<Module Name=\"{name}\" ParentModule=\"{parent}\" ParentModPortId=\"{port}\"><Ports>{ports}</Ports></Module>"
+        )
+    };
+    let up = |kind: &str, address: &str| {
+        alloc::format!("<Port Id=\"1\" Type=\"{kind}\" Address=\"{address}\" Upstream=\"true\"/>")
+    };
+    let modules = [
+        module("Local", "Local", "1", "<Port Id=\"1\" Type=\"ICP\" Address=\"0\" Upstream=\"false\"/>"),
+        module("EN2T", "Local", "1", &up("ICP", "3")),
+        module("Remote", "EN2T", "2", &up("Ethernet", "10.0.0.9")),
+        module("Analog", "Remote", "1", &up("ICP", "4")),
+        module("Second", "Remote", "1", &up("ICP", "5")),
+        module("Drive", "Second", "2", &up("Ethernet", "10.1.0.7")),
+    ]
+    .concat();
+    for (path, expected) in [
+        ("Remote", "4,10.0.0.9"),
+        ("remote, 1, 2", "4,10.0.0.9,1,2"),
+        ("Analog", "4,10.0.0.9,1,4"),
+        ("Drive", "4,10.0.0.9,1,5,2,10.1.0.7"),
+        ("EN2T, 2, 10.0.0.5", "4,10.0.0.5"),
+        ("Unknown, 2, 10.0.0.5", "4,10.0.0.5"),
+        ("EN2T", ""),
+        ("EN2T, 1, 0", ""),
+    ] {
+        let attributes = alloc::format!("RequestedLength=\"0\" ConnectionPath=\"{path}\"");
+        let read = import(&document(&modules, &generic("M", &attributes), ""));
+        let found = &read.blocks[0];
+        assert_eq!(found.config.as_msg().unwrap().target_cfg.path, expected, "{path}");
+        let severity = if expected.is_empty() { Severity::Error } else { Severity::Warning };
+        assert_eq!(found.remarks[0].severity, severity, "{path}: {:?}", found.remarks);
+    }
+    let ring = module("A", "B", "1", &up("ICP", "1")) + &module("B", "A", "1", &up("ICP", "2"));
+    let read = import(&document(&ring, &generic("M", "RequestedLength=\"0\" ConnectionPath=\"A\""), ""));
+    assert_eq!(read.blocks[0].config.as_msg().unwrap().target_cfg.path, "");
+}
+
+#[test]
+fn data_of_aliases_and_members_is_read() {
+    let tags = "<Tag Name=\"Cmd\" DataType=\"Command\"><Data Format=\"Decorated\"><Structure DataType=\"Command\">\
+                <DataValueMember Name=\"Speed\" DataType=\"INT\" Value=\"-2\"/><ArrayMember Name=\"Bytes\" DataType=\"SINT\" \
+                Dimensions=\"3\"><Element Index=\"[0]\" Value=\"16#0a\"/><Element Index=\"[1]\" Value=\"16#ff\"/>\
+                <Element Index=\"[2]\" Value=\"7\"/></ArrayMember></Structure></Data></Tag>\
+                <Tag Name=\"Short\" TagType=\"Alias\" AliasFor=\"Cmd.Bytes\"/>\
+                <Tag Name=\"Round\" TagType=\"Alias\" AliasFor=\"Round\"/>";
+    for (source, length, data) in [
+        ("Cmd.Bytes[1]", 2, Some("ff07")),
+        ("cmd.speed", 2, Some("feff")),
+        ("Short[0]", 3, Some("0aff07")),
+        ("Short[2]", 2, None),
+        ("Cmd", 5, None),
+        ("Cmd.Colour", 1, None),
+        ("Round", 1, None),
+    ] {
+        let attributes = alloc::format!(
+            "RequestedLength=\"{length}\" ConnectedFlag=\"2\" ConnectionPath=\"2, 10.0.0.1\" LocalElement=\"{source}\" \
+             DestinationTag=\"Short[1]\""
+        );
+        let read = import(&document("", &(generic("M", &attributes) + tags), ""));
+        let config = read.blocks[0].config.as_msg().unwrap();
+        assert_eq!(config.req_data, data.unwrap_or_default(), "{source}");
+        assert_eq!(config.res_data_size, 2);
+        let told = said(&read.blocks[0]).iter().any(|remark| remark.contains("is not known"));
+        assert_eq!(told, data.is_none(), "{source}: {:?}", read.blocks[0].remarks);
+    }
+}
+
+#[test]
+fn a_description_shows_what_the_export_sends() {
+    let mut config = write_speed();
+    (config.app_cfg.member_cnt, config.app_cfg.member_id[0]) = (1, 3);
+    let text = export(&config.clone().into()).text;
+    assert!(text.contains("; request 10 04 21 00 74 03 25 00 12 01 0A FF D2]]>"), "{text}");
+    config.app_cfg.instance = 70_000;
+    assert!(export(&config.into()).text.contains("; request is not the block's]]>"));
+}
+
+#[test]
+fn what_is_protected_is_told() {
+    let message = generic("M", "RequestedLength=\"0\" ConnectedFlag=\"2\" ConnectionPath=\"2, 10.0.0.1\"");
+    let read =
+        import(&document("", &message, "<EncodedData EncodedType=\"Routine\" Name=\"R\">0aBc</EncodedData>"));
+    assert!(read.remarks.iter().any(|remark| remark.to_string().contains("1 protected parts")));
+}

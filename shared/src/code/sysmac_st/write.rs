@@ -89,7 +89,7 @@ struct Section<'m> {
 
 impl Section<'_> {
     fn about(&self, out: &mut String) {
-        for about in self.message.about() {
+        for about in self.message.about(&self.message.bytes_without_members()) {
             line(out, &about);
         }
         line(
