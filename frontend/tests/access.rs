@@ -45,7 +45,7 @@ fn Header(props: &HeaderProps) -> Html {
     session::put(props.view.clone());
     html! { <>
         { who(Some(&props.view), props.read_only) }
-        { write_banner(&Writing::heard(state, props.left_ms)) }
+        { write_banner(&Writing::heard(state)) }
     </> }
 }
 

@@ -56,9 +56,7 @@ pub fn use_writing() -> (Rc<Writing>, Callback<()>) {
 
 async fn heard() -> Option<Writing> {
     let text = rest::ask(Method::GET, "window", None).await.ok()?;
-    let state: WriteState = rest::parse(&text).ok()?;
-    let left_ms = state.window.as_ref().map_or(0, |window| window.left_ms);
-    Some(Writing::heard(state, left_ms))
+    rest::parse::<WriteState>(&text).ok().map(Writing::heard)
 }
 
 /// ms between two questions: somebody who is locked out sees it soon.

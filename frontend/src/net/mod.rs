@@ -1,6 +1,8 @@
-//! The relay: its connection, its REST interface, and when to come back.
+//! The relay: its connections, its REST interface, and when to come back.
 
 mod heard;
+mod line;
+mod link;
 mod reconnect;
 mod relay;
 pub mod rest;
@@ -9,8 +11,10 @@ pub mod session;
 mod socket;
 
 pub use self::{
+    line::{Carried, Line},
+    link::{Link, Writing},
     reconnect::{Action, Input, Phase, Reconnect},
-    relay::{Link, Relay, Writing},
+    relay::{Deck, Relay},
     sequence::Sequence,
     socket::Socket,
 };

@@ -17,7 +17,7 @@ mod values;
 pub use self::{
     heard::Newest,
     hooks::{use_device_status, use_frames, use_plant, use_tree, use_value, use_watched},
-    plant::Plant,
+    plant::{Known, Plant},
     tree::Tree,
     values::{Shown, ValueStore},
 };
