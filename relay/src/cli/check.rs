@@ -12,7 +12,7 @@ use super::{Exit, run, say};
 /// A block from a file.
 #[derive(Debug, Args)]
 pub(super) struct Check {
-    /// A block as JSON, as the page copies it
+    /// A block as JSON, as the page copies it; - = stdin
     #[arg(value_name = "BLOCK.json")]
     file: PathBuf,
     /// For machines: {"findings":[…],"request":"HEX"}

@@ -3,7 +3,9 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use cipdeck_shared::code::{Change, Dialect, Found, Language, Options, Remark, RemarkKind, export, import};
+use cipdeck_shared::code::{
+    Change, Dialect, Found, Language, Options, Remark, RemarkKind, export, import, tell_apart,
+};
 use cipdeck_shared::plan::Severity;
 use clap::Args;
 use serde_json::{Value, json};
@@ -37,12 +39,23 @@ pub(super) struct Convert {
 impl Convert {
     /// Reads, converts and prints: code on stdout, everything else on stderr.
     pub(super) fn execute(self) -> Exit {
+        if self.il && !self.to.has_il() {
+            return Exit::usage(&format!(
+                "--il goes with Control Expert: there is no Instruction List of {}",
+                self.to
+            ));
+        }
         let text = match read(&self.file) {
             Ok(text) => text,
             Err(error) => return Exit::usage(&format!("{}: {error}", self.file.display())),
         };
         let options = Options { language: if self.il { Language::Il } else { Language::St } };
-        let imported = import(&text, self.from);
+        let mut imported = import(&text, self.from);
+        if self.to.has_variables() {
+            for (old, new) in tell_apart(imported.blocks.iter_mut().map(|found| &mut found.config)) {
+                eprintln!("{old}: called {new} here: another block has variables of that name");
+            }
+        }
         let converted: Vec<Converted<'_>> =
             imported.blocks.iter().map(|found| Converted::new(found, self.to, options)).collect();
         if self.json {
@@ -76,7 +89,16 @@ impl Convert {
                 eprintln!("{}: {change}", it.found.config.name());
             }
         }
-        say(joined(self.to, converted).trim_end());
+        if converted.len() > 1 && self.to.is_whole_file() {
+            eprintln!(
+                "{file}: {} files of {}, one after the other: keep each by itself",
+                converted.len(),
+                self.to
+            );
+        }
+        if !converted.is_empty() {
+            say(joined(self.to, converted).trim_end());
+        }
     }
 }
 
@@ -180,6 +202,7 @@ mod tests {
         assert_eq!(convert(NAME, &["--to", "json"]).await, 0);
         assert_eq!(convert(NAME, &["--to", "hex", "--strict"]).await, 0);
         assert_eq!(convert(NAME, &["--from", "hex", "--to", "json", "--json"]).await, 0);
+        assert_eq!(convert(NAME, &["--to", "data-exch", "--il"]).await, 0);
     }
 
     #[tokio::test]
@@ -195,7 +218,8 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_file_that_is_not_there_and_bytes_that_are_no_text_are_usage() {
+    async fn a_file_that_is_not_there_bytes_that_are_no_text_and_il_of_another_vendor_are_usage() {
+        assert_eq!(convert(NAME, &["--to", "ccw-st", "--il"]).await, 2);
         assert_eq!(act(&["convert", "/nowhere/at/all", "--to", "json"]).await, 2);
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("code.txt");

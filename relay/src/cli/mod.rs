@@ -44,14 +44,17 @@ const EXIT_CODES: &str = "Exit: 0 success; 1 internal, cannot listen, or cannot 
                           findings; 3 the device refused (ErrorID 224); 4 everything else (timeout, refused, \
                           malformed, nobody answered)";
 
+/// Options of every command stand below its own.
+const LOG: &str = "Log";
+
 #[derive(Clone, Debug, Args)]
 struct Logging {
     /// What is logged to stderr: error, warn, info, debug, trace or target=level,… [default: info for serve, else
     /// error]
-    #[arg(long, global = true, value_name = "FILTER")]
+    #[arg(long, global = true, help_heading = LOG, value_name = "FILTER")]
     log: Option<String>,
     /// How it is logged. [default: text]
-    #[arg(long, global = true, value_enum)]
+    #[arg(long, global = true, help_heading = LOG, value_enum)]
     log_format: Option<LogFormat>,
 }
 

@@ -12,7 +12,7 @@ use super::remote::Remote;
 /// A block from a file.
 #[derive(Debug, Args)]
 pub(super) struct Run {
-    /// A block as JSON, as the page copies it
+    /// A block as JSON, as the page copies it; - = stdin
     #[arg(value_name = "BLOCK.json")]
     file: PathBuf,
     #[command(flatten)]
@@ -33,8 +33,12 @@ impl Run {
 /// Reads a block; its id and revision do not matter here.
 pub(super) fn read(file: &Path) -> Result<BlockConfig, Exit> {
     let name = file.display().to_string();
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
+    let text = if file.as_os_str() == "-" {
+        std::io::read_to_string(std::io::stdin())
+    } else {
+        std::fs::read_to_string(file)
+    };
+    let text = text.map_err(|error| Exit::usage(&format!("cannot read {name}: {error}")))?;
     project::block(&name, &text).map_err(|errors| {
         let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
         Exit::usage(&format!("{name} is not a block:\n{}", lines.join("\n")))

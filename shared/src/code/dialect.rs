@@ -105,6 +105,29 @@ impl Dialect {
         }
     }
 
+    /// Whether blocks become variables of a program, which have names.
+    pub const fn has_variables(self) -> bool {
+        matches!(
+            self,
+            Self::CcwSt
+                | Self::L5x
+                | Self::SendReqEtc100
+                | Self::SendReqEtc101
+                | Self::DataExch
+                | Self::SysmacSt
+        )
+    }
+
+    /// Whether each block is a file of its own: two of them, one after the other, are none.
+    pub const fn is_whole_file(self) -> bool {
+        matches!(self, Self::L5x | Self::Pycomm3 | Self::Rust)
+    }
+
+    /// Whether it is a language of Control Expert, which has two.
+    pub const fn has_il(self) -> bool {
+        matches!(self, Self::SendReqEtc100 | Self::SendReqEtc101 | Self::DataExch)
+    }
+
     /// Without the dot.
     pub const fn file_ending(self) -> &'static str {
         match self {

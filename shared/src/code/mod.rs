@@ -6,6 +6,7 @@
 //! | [`convert()`] | a block of one kind → a block of another, with all that changed |
 //! | [`export()`] | a block → text |
 //! | [`import()`] | text → blocks, and what of it is not understood, line by line |
+//! | [`tell_apart()`] | names for several blocks in one program |
 //! | [`highlight()`] | text → where its keywords, comments, numbers, texts and names are |
 //!
 //! Everything is told: what a dialect cannot say is a [`Change`] and stands as a comment in the text; what an import
@@ -43,6 +44,7 @@ pub use self::change::{Change, Grade, Why};
 pub use self::convert::{Converted, convert};
 pub use self::dialect::{Dialect, Kind, Language, UnknownDialect};
 pub use self::ink::{Ink, highlight};
+pub use self::name::tell_apart;
 pub use self::remark::{Remark, RemarkKind};
 
 /// Bytes of text that are imported at once.

@@ -1,6 +1,11 @@
 //! Names of users as identifiers of a program.
 
-use alloc::string::String;
+use alloc::collections::BTreeSet;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use crate::config::BlockConfig;
 
 /// Characters of an identifier; the shortest limit among the dialects.
 const MAX_IDENTIFIER: usize = 32;
@@ -46,9 +51,66 @@ pub(super) fn identifier(name: &str) -> String {
     identifier
 }
 
+/// Characters by which blocks of one program differ; the longest ending of a variable follows.
+pub(super) const MAX_NAME: usize = 24;
+
+/// Gives another name (`ramp_2`) to each block whose variables would be those of one before it, for code of several
+/// blocks in one program. Tells the old and the new ones.
+pub fn tell_apart<'a>(blocks: impl Iterator<Item = &'a mut BlockConfig>) -> Vec<(String, String)> {
+    let blocks: Vec<_> = blocks.collect();
+    let key = |name: &str| {
+        let mut key = identifier(name).to_ascii_lowercase();
+        key.truncate(MAX_NAME);
+        key.trim_end_matches('_').to_string()
+    };
+    let all: BTreeSet<String> = blocks.iter().map(|block| key(block.name())).collect();
+    let mut taken = BTreeSet::new();
+    let mut renamed = Vec::new();
+    for block in blocks {
+        let old = block.name().to_string();
+        if taken.insert(key(&old)) {
+            continue;
+        }
+        let named = |number: usize| {
+            let number = format!("_{number}");
+            let mut name = identifier(&old);
+            name.truncate(MAX_NAME - number.len());
+            format!("{}{number}", name.trim_end_matches('_'))
+        };
+        // Who has a name of his own keeps it.
+        let free = (2..10_000).map(named).find(|name| !all.contains(&key(name)) && taken.insert(key(name)));
+        if let Some(name) = free {
+            block.set_name(name.clone());
+            renamed.push((old, name));
+        }
+    }
+    renamed
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::MsgCipGeneric;
+
+    #[test]
+    fn blocks_of_one_program_have_variables_of_their_own() {
+        let long = "x".repeat(40);
+        let names = ["speed write", "speed-write", "SPEED_WRITE", "speed_write_2", &long, &long, "other"];
+        let mut blocks = names.map(|name| {
+            let mut block = BlockConfig::from(MsgCipGeneric::product_name("0,0"));
+            block.set_name(name.into());
+            block
+        });
+        let renamed = tell_apart(blocks.iter_mut());
+        let x = "x".repeat(22) + "_2";
+        let told: Vec<(&str, &str)> = renamed.iter().map(|(old, new)| (old.as_str(), new.as_str())).collect();
+        assert_eq!(told, [("speed-write", "speed_write_3"), ("SPEED_WRITE", "SPEED_WRITE_4"), (&long, &x)]);
+        let kept: Vec<&str> = blocks.iter().map(BlockConfig::name).collect();
+        assert_eq!(
+            kept,
+            ["speed write", "speed_write_3", "SPEED_WRITE_4", "speed_write_2", &long, &x, "other"]
+        );
+    }
 
     #[test]
     fn every_name_is_an_identifier() {

@@ -16,17 +16,20 @@ use super::report::{self, Report};
 use super::{Exit, say};
 use crate::shutdown;
 
+/// These are seen in the help of every command.
+const HEADING: &str = "Another relay, for run";
+
 /// Which relay, and how it is known and knows us.
 #[derive(Clone, Debug, Args)]
 pub(super) struct Remote {
     /// Let a relay send, with `run`: https://HOST:PORT; plain http only on this machine
-    #[arg(long, global = true, value_name = "URL")]
+    #[arg(long, global = true, help_heading = HEADING, value_name = "URL")]
     relay: Option<String>,
     /// File with an API token of the relay; without it the environment's CIPDECK_TOKEN
-    #[arg(long, global = true, value_name = "FILE")]
+    #[arg(long, global = true, help_heading = HEADING, value_name = "FILE")]
     token_file: Option<PathBuf>,
     /// SHA-256 of the relay's certificate, for one that it has made for itself: as `cipdeck serve` prints it
-    #[arg(long, global = true, value_name = "SHA256")]
+    #[arg(long, global = true, help_heading = HEADING, value_name = "SHA256")]
     fingerprint: Option<String>,
 }
 

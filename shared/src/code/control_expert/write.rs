@@ -10,14 +10,11 @@ use super::super::change::{Change, Grade, Why};
 use super::super::dialect::Language;
 use super::super::header::harmless;
 use super::super::message::{Ours, not_sendable, ours_alone};
-use super::super::name::identifier;
+use super::super::name::{MAX_NAME, identifier};
 use super::words::{about, list};
 use crate::config::{BlockConfig, Endpoint, Host, PlcAddress, SendReq, SendReqForm};
 use crate::plan::MessagePlan;
 use crate::plan::words::WordsPlan;
-
-/// Characters of a name in front of the longest ending, within Control Expert's 32.
-const MAX_NAME: usize = 24;
 
 /// A block as a section of Control Expert.
 pub(in super::super) fn export(block: &BlockConfig, language: Language) -> Code {
