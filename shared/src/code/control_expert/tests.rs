@@ -133,12 +133,36 @@ fn the_section_tests_the_activity_bit_and_reads_the_reports_when_it_falls() {
         "drive_s_current_Send[1] := 16#030E;  (* 782: service 16#0E = 14 Get_Attribute_Single, path of 3 words *)",
         "drive_s_current_Mgmt[2] := 0;  (* 16#0000: waits FOR EVER *)",
         "SEND_REQ(drive_s_current_Adr, 16#000E, drive_s_current_Send, drive_s_current_Mgmt, drive_s_current_Recv);",
+        // Refused at once, the activity bit never rises: the reports are read all the same.
+        "drive_s_current_Mgmt, drive_s_current_Recv);\n    drive_s_current_Busy := TRUE;",
         "drive_s_current_Report := drive_s_current_Mgmt[1];",
     ] {
         assert!(st.contains(part), "{part}\n{st}");
     }
     let il = export(&config.into(), Language::Il).text;
     assert!(il.contains("    LD drive_s_current_Adr\n    SEND_REQ 16#000E, drive_s_current_Send, "), "{il}");
+    assert!(
+        il.contains("_Recv\n    LD TRUE  (*") && il.contains("*)\n    ST drive_s_current_Busy\n"),
+        "{il}"
+    );
+}
+
+#[test]
+fn decimals_are_those_of_an_int_and_what_is_not_sent_is_said() {
+    let mut config = golden(1);
+    config.data_to_send.push_str(" FFA3 0001");
+    config.management_param[2] = 40_000;
+    config.management_param[3] += 1;
+    let st = export(&config.into(), Language::St).text;
+    for part in [
+        "_Send[1] := 16#C0A8;  (* -16216: IP address 192.168 *)",
+        "_Send[8] := 16#FFA3;  (* -93: byte 16#A3 = 163; the high byte is not sent *)",
+        "_Send[9] := 16#0001;  (* 1: not sent *)",
+        "_Mgmt[2] := 16#9C40;  (* 16#9C40: 4000000 ms *)",
+        "INT := [0, 0, 16#9C40, 17]",
+    ] {
+        assert!(st.contains(part), "{part}\n{st}");
+    }
 }
 
 #[test]

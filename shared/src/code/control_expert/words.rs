@@ -16,7 +16,7 @@ pub(super) fn list(words: &[u16]) -> String {
     words.join(", ")
 }
 
-/// What a word is, beginning with its decimal value.
+/// What a word is, beginning with its decimal value as the data editor shows an INT.
 pub(super) fn about(plan: &MessagePlan, words: &WordsPlan, index: usize) -> String {
     let word = words.words.get(index).copied().unwrap_or(0);
     let [low, high] = word.to_le_bytes();
@@ -32,7 +32,11 @@ pub(super) fn about(plan: &MessagePlan, words: &WordsPlan, index: usize) -> Stri
             let name = table::service(class.unwrap_or(0), request.service()).map_or("", |entry| entry.name);
             format!("service 16#{low:02X} = {low} {name}, path of {high} words").replace(" ,", ",")
         }
+        _ if index * 2 >= usize::from(words.length) => "not sent".into(),
+        _ if index * 2 + 1 == usize::from(words.length) => {
+            format!("byte 16#{low:02X} = {low}; the high byte is not sent")
+        }
         _ => format!("bytes 16#{low:02X} 16#{high:02X} = {low} {high}"),
     };
-    format!("{word}: {what}")
+    format!("{}: {what}", word.cast_signed())
 }

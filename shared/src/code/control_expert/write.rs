@@ -119,15 +119,21 @@ impl Section<'_> {
         }
     }
 
-    /// Timeout and length.
-    fn management(&self) -> [u32; 2] {
-        [self.words.timeout_ms.map_or(0, |ms| ms / 100), self.words.length.into()]
+    /// Timeout and length. An INT is at most 32767 in decimal, and 65535 in hexadecimal.
+    fn management(&self) -> [String; 2] {
+        let timeout = self.words.timeout_ms.map_or(0, |ms| ms / 100);
+        let marked = timeout > i16::MAX.cast_unsigned().into();
+        let timeout = if marked { format!("16#{timeout:04X}") } else { timeout.to_string() };
+        [timeout, self.words.length.to_string()]
     }
 
     fn management_words(&self) -> [String; 2] {
-        let [timeout, length] = self.management();
-        let waits = self.words.timeout_ms.map_or("waits FOR EVER".to_string(), |ms| format!("{ms} ms"));
-        [format!("16#{timeout:04X}: {waits}"), format!("16#{length:04X} bytes")]
+        let timeout = self.words.timeout_ms;
+        let waits = timeout.map_or("waits FOR EVER".to_string(), |ms| format!("{ms} ms"));
+        [
+            format!("16#{:04X}: {waits}", timeout.map_or(0, |ms| ms / 100)),
+            format!("16#{:04X} bytes", self.words.length),
+        ]
     }
 
     /// The function and its constant argument.
@@ -157,9 +163,10 @@ impl Section<'_> {
             "    {name}_Mgmt[2] := {timeout};  (* {timeout_words} *)\n\
              \x20   {name}_Mgmt[3] := {length};  (* {length_words} *)\n\
              \x20   {function}({name}_Adr, {code}, {name}_Send, {name}_Mgmt, {name}_Recv);\n\
+             \x20   {name}_Busy := TRUE;  (* a request that is refused at once never raises the activity bit *)\n\
              END_IF;\n\
              {name}_Last := {name}_Start;\n\
-             (* Done when the activity bit falls: low byte communication report, high byte operation report, both 0 = \
+             (* Done when the activity bit is down: low byte communication report, high byte operation report, both 0 = \
              answered; then\n   the CIP status: low byte general status, 0 = success. *)\n\
              IF {name}_Busy AND NOT {name}_Mgmt[0].0 THEN\n\
              \x20   {name}_Report := {name}_Mgmt[1];\n\
@@ -191,8 +198,9 @@ impl Section<'_> {
             "    LD {timeout}  (* {timeout_words} *)\n    ST {name}_Mgmt[2]\n\
              \x20   LD {length}  (* {length_words} *)\n    ST {name}_Mgmt[3]\n\
              \x20   LD {name}_Adr\n    {function} {code}, {name}_Send, {name}_Mgmt, {name}_Recv\n\
+             \x20   LD TRUE  (* a request that is refused at once never raises the activity bit *)\n    ST {name}_Busy\n\
              {name}_Wait:\n    LD {name}_Start\n    ST {name}_Last\n\
-             (* Done when the activity bit falls: low byte communication report, high byte operation report, both 0 = \
+             (* Done when the activity bit is down: low byte communication report, high byte operation report, both 0 = \
              answered; then\n   the CIP status: low byte general status, 0 = success. *)\n\
              \x20   LD {name}_Busy\n    ANDN {name}_Mgmt[0].0\n    JMPCN {name}_Going\n\
              \x20   LD {name}_Mgmt[1]\n    ST {name}_Report\n    LD {name}_Recv[1]\n    ST {name}_Cip\n\
