@@ -70,6 +70,12 @@ pub(super) fn harmless(words: &str) -> String {
     plain
 }
 
+/// One more line of a program.
+pub(super) fn line(out: &mut String, text: &str) {
+    out.push_str(text);
+    out.push('\n');
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

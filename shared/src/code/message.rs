@@ -5,7 +5,9 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::config::{BlockConfig, Channel, Extra, MsgCipGeneric, Profile, Target, TargetPath};
+use crate::config::{
+    BlockConfig, Channel, Endpoint, Extra, Host, MsgCipGeneric, Profile, Target, TargetPath,
+};
 use crate::plan::MessagePlan;
 use crate::table;
 
@@ -54,7 +56,7 @@ impl<'a> Message<'a> {
     }
 
     /// Host and TCP port; `None`: the built-in simulated device.
-    pub(super) const fn endpoint(&self) -> Option<&crate::config::Endpoint> {
+    pub(super) const fn endpoint(&self) -> Option<&Endpoint> {
         match &self.path.target {
             Target::BuiltIn => None,
             Target::Network(endpoint) => Some(endpoint),
@@ -138,6 +140,37 @@ impl<'a> Message<'a> {
         unused(connected || timeout == 0, "TargetCfg.ConnMsgTimeout", timeout.to_string());
         unused(connected || !target.conn_close, "TargetCfg.ConnClose", "TRUE".into());
         changes
+    }
+}
+
+/// What several dialects cannot say in the same way.
+impl Message<'_> {
+    /// The name as an identifier, if that is another one.
+    pub(super) fn renamed(&self, name: &str) -> Option<Change> {
+        let from = &self.config.name;
+        (name != from).then(|| Change::new(&"name", from, &name, Grade::Carried, Why::NameCharacters))
+    }
+
+    /// Of a dialect that has no member segments.
+    pub(super) fn without_members(&self) -> Option<Change> {
+        let members = Some(self.members()).filter(|members| !members.is_empty())?;
+        let from = format!("{members:?}");
+        Some(Change::new(&"AppCfg.MemberId", &from, &"", Grade::Request, Why::NoMemberSegments))
+    }
+
+    /// Of a dialect that knows addresses in digits and port 44818: what of the path it cannot say. `to`: what it says
+    /// instead; `whole`: whether that goes along the whole route.
+    pub(super) fn path_changes(&self, to: &str, whole: bool) -> Vec<Change> {
+        let endpoint = self.endpoint();
+        let reasons = [
+            (endpoint.is_none(), Grade::Carried, Why::NoBuiltIn),
+            (endpoint.is_some_and(Endpoint::has_unusual_port), Grade::Request, Why::NoTcpPort),
+            (endpoint.is_some_and(|it| matches!(it.host, Host::Name(_))), Grade::Request, Why::NoHostName),
+            (!whole, Grade::Request, Why::NoRoute),
+        ];
+        let path = &self.config.target_cfg.path;
+        let changes = reasons.into_iter().filter(|(is_so, ..)| *is_so);
+        changes.map(|(_, grade, why)| Change::new(&"TargetCfg.Path", path, &to, grade, why)).collect()
     }
 }
 

@@ -1,13 +1,14 @@
 //! Typed variables into bytes, and bytes into typed variables.
 //!
-//! Whole numbers by arithmetic, low byte first; what arithmetic cannot take apart (REAL, 64 bits, texts) by `COP`.
+//! Whole numbers by arithmetic, low byte first; what arithmetic cannot take apart (REAL, LREAL, 64 bits) by `COP`, a
+//! function block (2080-RM001D p. 304) that counts elements of its destination.
 
 use alloc::collections::BTreeSet;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::write::line;
+use crate::code::header::line;
 use crate::code::name::identifier;
 use crate::code::text::quoted;
 use crate::tag::{DataField, DataFields, Elementary, FieldKind, Form, Value};
@@ -17,7 +18,7 @@ use crate::tag::{DataField, DataFields, Elementary, FieldKind, Form, Value};
 pub(super) enum Way {
     /// Statements that anybody can follow.
     Arithmetic,
-    /// The copy function.
+    /// The copy block.
     Copy,
 }
 
@@ -65,6 +66,11 @@ impl Fields {
         self.0.is_empty()
     }
 
+    /// Whether a copy block is needed.
+    pub(super) fn copies(&self) -> bool {
+        self.0.iter().any(|field| field.way == Way::Copy)
+    }
+
     /// How the byte gets its value; `None`: no field has it.
     pub(super) fn way(&self, byte: usize) -> Option<Way> {
         let of = |field: &&Field| (field.from..field.from + field.size).contains(&byte);
@@ -81,16 +87,14 @@ impl Fields {
         }
     }
 
-    /// Variables into the array, whose first element has number 1.
-    pub(super) fn pack(&self, array: &str, out: &mut String) {
+    /// Variables of a message into its array, whose first element has number 1.
+    pub(super) fn pack(&self, message: &str, array: &str, out: &mut String) {
         for field in &self.0 {
             let (variable, from) = (&field.variable, field.from + 1);
             match field.way {
                 Way::Copy => {
-                    line(
-                        out,
-                        &format!("COP(TRUE, {variable}, 0, {array}, {}, {}, FALSE);", field.from, field.size),
-                    );
+                    let bytes = format!("{}, {}", field.from, field.size);
+                    line(out, &format!("{message}_Copy(TRUE, {variable}, 0, {array}, {bytes}, FALSE);"));
                 }
                 Way::Arithmetic if field.kind == "BOOL" => {
                     line(out, &format!("{array}[{from}] := ANY_TO_USINT({variable});"));
@@ -104,8 +108,8 @@ impl Fields {
         }
     }
 
-    /// The array into variables.
-    pub(super) fn unpack(&self, array: &str, out: &mut String) {
+    /// The array of a message into its variables.
+    pub(super) fn unpack(&self, message: &str, array: &str, out: &mut String) {
         for field in &self.0 {
             let (variable, kind, from) = (&field.variable, field.kind, field.from + 1);
             let bytes = |count: usize, kind: &str| {
@@ -118,9 +122,11 @@ impl Fields {
             };
             match field.way {
                 Way::Copy => {
-                    let text =
-                        format!("COP(TRUE, {array}, {}, {variable}, 0, {}, FALSE);", field.from, field.size);
-                    line(out, &format!("    {text}"));
+                    let from = field.from;
+                    line(
+                        out,
+                        &format!("    {message}_Copy(TRUE, {array}, {from}, {variable}, 0, 1, FALSE);"),
+                    );
                 }
                 Way::Arithmetic if kind == "BOOL" => {
                     line(out, &format!("    {variable} := {array}[{from}] <> USINT#0;"));

@@ -37,7 +37,7 @@ pub(in crate::code) fn import(text: &str) -> Imported {
             let dialect = Dialect::CcwSt;
             imported.blocks.push(Found { config: config.into(), dialect, lines, remarks });
         }
-        if matches!(&item.statement, Statement::Call(call) if call.is("COP")) {
+        if matches!(&item.statement, Statement::Call(call) if is_copy(call, &types)) {
             copies.push(item);
         }
         memory.step(index, item);
@@ -78,6 +78,12 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
     types
 }
 
+/// An instance of `COP`; one that nobody declares is known by its name.
+fn is_copy(call: &Call<'_>, types: &Types<'_, '_>) -> bool {
+    let declared = types.get(&call.name.root.to_lowercase());
+    declared.map_or_else(|| is_numbered(call.name.root, "COP"), |kind| kind.is("COP"))
+}
+
 /// An instance of `MSG_CIPGENERIC`; one that nobody declares is known by its parameters.
 fn is_message(call: &Call<'_>, types: &Types<'_, '_>) -> bool {
     if let Some(kind) = types.get(&call.name.root.to_lowercase()) {
@@ -85,7 +91,21 @@ fn is_message(call: &Call<'_>, types: &Types<'_, '_>) -> bool {
     }
     let formal =
         |name: &str| call.arguments.iter().any(|it| it.name.is_some_and(|it| it.eq_ignore_ascii_case(name)));
-    call.is("MSG_CIPGENERIC") || formal("AppCfg") || formal("TargetCfg") || is_positional(call)
+    is_instance(call.name.root) || formal("AppCfg") || formal("TargetCfg") || is_positional(call)
+}
+
+/// An instance that nobody declares, by the name that the editor gives it: `MSG_CIPGENERIC_1`.
+pub(in crate::code) fn is_instance(name: &str) -> bool {
+    is_numbered(name, "MSG_CIPGENERIC")
+}
+
+/// A block's own name, or that with a number or a word behind it.
+fn is_numbered(name: &str, block: &str) -> bool {
+    let is_it = |(begin, rest): (&str, &str)| {
+        begin.eq_ignore_ascii_case(block)
+            && (rest.is_empty() || rest.starts_with(|c: char| c == '_' || c.is_ascii_digit()))
+    };
+    name.split_at_checked(block.len()).is_some_and(is_it)
 }
 
 /// `fb(start, ctrl, app, target, req, length, res)` of an instance that nobody declares.

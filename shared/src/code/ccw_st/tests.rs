@@ -175,3 +175,31 @@ fn a_copy_into_the_request_is_told() {
     let remarks = imported.blocks[0].remarks.iter().filter(|remark| remark.to_string().contains("COP"));
     assert_eq!(remarks.map(|remark| remark.line).collect::<Vec<_>>(), [2]);
 }
+
+#[test]
+fn a_copy_counts_elements_of_its_destination() {
+    let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+    (config.app_cfg.service, config.req_layout, config.req_data) =
+        (16, "n: INT; level: REAL".into(), "01000000c03f".into());
+    config.res_layout = "n: UINT; level: LREAL".into();
+    let text = export(&config.into()).text;
+    for part in [
+        "    product_name_Copy : COP;",
+        "product_name_Copy(TRUE, product_name_req_level, 0, product_name_Req, 2, 4, FALSE);",
+        "    product_name_Copy(TRUE, product_name_Res, 2, product_name_res_level, 0, 1, FALSE);",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}
+
+#[test]
+fn an_instance_is_known_by_the_name_that_the_editor_gives_it() {
+    let imported = import(
+        "a.Service := 14; a.Class := 1; a.Instance := 1; t.Path := '4,10.0.0.1';
+COP_1(TRUE, Speed, 0, r, 0, 2, FALSE);
+MSG_CIPGENERIC_2(IN := go, CtrlCfg := c, AppCfg := a, TargetCfg := t, ReqData := r, ReqLength := 2, ResData := q);",
+    );
+    assert_eq!(imported.blocks.len(), 1);
+    assert_eq!(imported.blocks[0].config.as_msg().unwrap().name, "MSG_CIPGENERIC_2");
+    assert!(told(&imported).iter().any(|it| it.contains("COP is not carried out here")));
+}

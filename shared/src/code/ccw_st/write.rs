@@ -3,16 +3,15 @@
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use core::fmt::Write;
 
 use super::fields::{Fields, Way};
 use crate::code::Code;
 use crate::code::change::{Change, Grade, Why};
-use crate::code::header::harmless;
+use crate::code::header::{harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
 use crate::code::text::quoted;
-use crate::config::{BlockConfig, CONTROLLER_HOPS, Endpoint, Host};
+use crate::config::{BlockConfig, CONTROLLER_HOPS};
 
 const TELLS: Tells = Tells { trigger: true, res_data_size: true };
 
@@ -49,20 +48,9 @@ fn changes(message: &Message<'_>, name: &str, request: &Fields, reply: &Fields) 
             (change.grade, change.why) = (Grade::Carried, Why::ProgramDoes);
         }
     }
-    if name != message.config.name {
-        changes.push(Change::new(&"name", &message.config.name, &name, Grade::Carried, Why::NameCharacters));
-    }
-    let path = &message.config.target_cfg.path;
-    let mut other = |is_other: bool, grade: Grade, why: Why| {
-        if is_other {
-            changes.push(Change::new(&"TargetCfg.Path", path, path, grade, why));
-        }
-    };
-    let endpoint = message.endpoint();
-    other(endpoint.is_none(), Grade::Carried, Why::NoBuiltIn);
-    other(endpoint.is_some_and(Endpoint::has_unusual_port), Grade::Request, Why::NoTcpPort);
-    other(endpoint.is_some_and(|it| matches!(it.host, Host::Name(_))), Grade::Request, Why::NoHostName);
-    other(message.path.hops() > CONTROLLER_HOPS, Grade::Request, Why::NoRoute);
+    let whole = message.path.hops() <= CONTROLLER_HOPS;
+    changes.extend(message.renamed(name));
+    changes.extend(message.path_changes(&message.config.target_cfg.path, whole));
     changes
 }
 
@@ -115,6 +103,9 @@ impl Section<'_> {
         }
         self.request.declare(out);
         self.reply.declare(out);
+        if self.request.copies() || self.reply.copies() {
+            line(out, &format!("    {name}_Copy : COP;"));
+        }
         line(out, "END_VAR");
         out.push('\n');
     }
@@ -166,7 +157,7 @@ impl Section<'_> {
                 line(out, &format!("{array}[{}] := {byte}; (* 16#{byte:02X} *)", at + 1));
             }
         }
-        self.request.pack(&array, out);
+        self.request.pack(self.name, &array, out);
         out.push('\n');
     }
 
@@ -188,7 +179,7 @@ impl Section<'_> {
         line(out, &format!("{name}_ResLen := {name}.ResLength;"));
         if !self.reply.is_empty() {
             line(out, &format!("IF {name}_Q THEN"));
-            self.reply.unpack(&format!("{name}_Res"), out);
+            self.reply.unpack(name, &format!("{name}_Res"), out);
             line(out, "END_IF;");
         }
     }
@@ -196,9 +187,4 @@ impl Section<'_> {
 
 fn truth(value: bool) -> &'static str {
     if value { "TRUE" } else { "FALSE" }
-}
-
-pub(super) fn line(out: &mut String, text: &str) {
-    // Writing to a String cannot fail.
-    let _ = writeln!(out, "{text}");
 }

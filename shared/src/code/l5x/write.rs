@@ -32,14 +32,8 @@ pub(in super::super) fn export(block: &BlockConfig) -> Code {
 fn changes(message: &Message<'_>) -> Vec<Change> {
     let app = &message.config.app_cfg;
     let mut changes = message.untold(TELLS);
-    let (typed, name) = (&message.config.name, identifier(&message.config.name));
-    if *typed != name {
-        changes.push(Change::new(&"name", typed, &name, Grade::Carried, Why::NameCharacters));
-    }
-    if !message.members().is_empty() {
-        let members = format!("{:?}", message.members());
-        changes.push(Change::new(&"AppCfg.MemberId", &members, &"", Grade::Request, Why::NoMemberSegments));
-    }
+    changes.extend(message.renamed(&identifier(&message.config.name)));
+    changes.extend(message.without_members());
     if app.instance > MAX_TARGET_OBJECT {
         let why = Why::NumberLimit(MAX_TARGET_OBJECT);
         changes.push(Change::new(&"AppCfg.Instance", &app.instance, &app.instance, Grade::Request, why));

@@ -9,9 +9,9 @@ use core::ops::Range;
 
 use super::line::is_instruction;
 use super::only;
-use crate::code::ccw_st;
 use crate::code::dialect::Dialect;
 use crate::code::text::{Expression, Item, Script, Statement, roots};
+use crate::code::{ccw_st, sysmac_st};
 
 /// One piece for each vendor that has a call in the text.
 pub(super) fn split(text: &str) -> Vec<(Dialect, Cow<'_, str>)> {
@@ -96,6 +96,8 @@ fn vendor(statement: &Statement<'_>, types: &BTreeMap<String, String>) -> Option
         "data_exch" => Some(Dialect::DataExch),
         "msg_cipgeneric" => Some(Dialect::CcwSt),
         "cipucmmsend" | "cipsend" | "cipopen" | "cipopenwithdatasize" | "cipclose" => Some(Dialect::SysmacSt),
+        name if sysmac_st::is_instance(name) => Some(Dialect::SysmacSt),
+        name if ccw_st::is_instance(name) => Some(Dialect::CcwSt),
         _ if named(&["CtrlCfg", "AppCfg", "TargetCfg"]) => Some(Dialect::CcwSt),
         _ if named(&["RqPath", "RoutePath", "ServiceCode"]) => Some(Dialect::SysmacSt),
         _ if ccw_st::is_positional(call) => Some(Dialect::CcwSt),

@@ -44,7 +44,7 @@ fn what_is_written_is_read_back_without_its_comments() {
     let mut connected = write.clone();
     let target = &mut connected.target_cfg;
     (target.cip_conn_mode, target.ucmm_timeout, target.conn_msg_timeout, target.conn_close) =
-        (1, 700, 900, true);
+        (1, 900, 900, true);
     for config in [MsgCipGeneric::product_name("0,0"), write, connected] {
         let Code { text, changes } = export(&config.clone().into());
         assert!(changes.iter().all(|change| !change.is_loss()), "{changes:?}");
@@ -118,7 +118,6 @@ fn what_cannot_be_known_is_told() {
         [
             "1:1: error: Foo is not known, left out",
             "1:1: error: ServiceCode is not a constant: write its value",
-            "1:1: warning: TimeOut is not given: 20 tenths of a second are taken",
             "1:1: error: the CIPOpen of this handle is missing",
             "1:1: warning: ServiceDat: 2 elements from [0] to [1] are not set: they are 0",
             "1:1: error: RqPath.ClassID is missing",
@@ -129,4 +128,72 @@ fn what_cannot_be_known_is_told() {
             "2:1: error: RqPath.InstanceID is missing",
         ]
     );
+}
+
+#[test]
+fn a_program_as_the_manual_writes_it_is_one_message() {
+    let imported = import(
+        "IF DoIt THEN
+  Path.ClassID := UINT#16#0F; Path.InstanceID := UINT#41; Path.isAttributeID := TRUE; Path.AttributeID := UINT#1;
+  CIPUCMMSend_instance(Execute := FALSE, ServiceDat := Data[0], RespServiceDat := Resp[0]);
+  Stage := INT#1;
+END_IF;
+IF Stage = INT#1 THEN
+  CIPUCMMSend_instance(Execute := TRUE, RoutePath := '02\\192.168.250.2', TimeOut := UINT#25, ServiceCode := BYTE#16#10,
+    RqPath := Path, ServiceDat := Data[0], Size := SizeOfAry(Data), RespServiceDat := Resp[0]);
+END_IF;
+VAR Data : ARRAY[0..1] OF BYTE := [16#E8, 16#03]; END_VAR",
+    );
+    let [found] = imported.blocks.as_slice() else { panic!("{:?}", imported.blocks) };
+    let config = found.config.as_msg().unwrap();
+    assert_eq!((config.name.as_str(), config.req_data.as_str()), ("CIPUCMMSend_instance", "e803"));
+    assert_eq!((config.target_cfg.ucmm_timeout, config.app_cfg.attribute), (2_500, 1));
+    let severities = |severity| told(&imported).iter().filter(|it| it.contains(severity)).count();
+    assert_eq!((severities(": error"), severities("Execute := FALSE changes nothing")), (0, 1));
+}
+
+#[test]
+fn arguments_without_names_stand_in_their_order() {
+    let imported = import(
+        "p.ClassID := 1; p.InstanceID := 1; p.AttributeID := 7;
+CIPUCMMSend1(go, '02\\10.0.0.7', 20, 16#0E, p, d, 0, r);
+CIPOpen1(go, '02\\10.0.0.8', 30);
+CIPSend1(CIPOpen1.Done, CIPOpen1.Handle, 16#0E, p, d, 0, r);
+CIPClose1(CIPSend1.Done, CIPOpen1.Handle);",
+    );
+    let read: Vec<_> = imported.blocks.iter().map(|found| found.config.as_msg().unwrap()).collect();
+    let [direct, connected] = read.as_slice() else { panic!("{:?}", told(&imported)) };
+    assert_eq!((direct.target_cfg.path.as_str(), direct.target_cfg.ucmm_timeout), ("4,10.0.0.7", 2_000));
+    let target = &connected.target_cfg;
+    assert_eq!((target.path.as_str(), target.cip_conn_mode, target.conn_close), ("4,10.0.0.8", 1, true));
+    // The one timeout is that of the connection.
+    assert_eq!((target.ucmm_timeout, target.conn_msg_timeout), (3_000, 3_000));
+    let told = told(&imported);
+    let has = |part: &str| told.iter().any(|it| it.contains(part));
+    assert!(
+        has("note: arguments without names are read in this order: Execute, Handle, ServiceCode"),
+        "{told:?}"
+    );
+    assert!(has("RqPath.AttributeID is not sent: isAttributeID is not TRUE"), "{told:?}");
+    assert!(!told.iter().any(|it| it.contains(": error")), "{told:?}");
+}
+
+#[test]
+fn a_connection_has_one_timeout() {
+    let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+    let target = &mut config.target_cfg;
+    (target.cip_conn_mode, target.ucmm_timeout, target.conn_msg_timeout) = (1, 700, 900);
+    let code = export(&config.into());
+    let losses: Vec<_> =
+        code.losses().map(|it| (it.member.as_str(), it.to.as_str(), it.why.name())).collect();
+    assert_eq!(losses, [("TargetCfg.UcmmTimeout", "900", "one_timeout")]);
+    assert_eq!(code.text.matches("TimeOut :=").count(), 1);
+    assert!(code.text.contains("TimeOut := UINT#9, (* 900 ms *)\n    Handle => "), "{}", code.text);
+}
+
+#[test]
+fn the_comment_shows_what_is_sent() {
+    let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+    (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
+    assert!(export(&config.into()).text.contains("(* request 0E 03 20 01 24 01 30 07 *)"));
 }

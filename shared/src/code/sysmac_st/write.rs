@@ -3,16 +3,15 @@
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::fmt::Write;
 
 use super::{SEGMENTS, route, width};
 use crate::code::Code;
 use crate::code::change::{Change, Grade, Why};
-use crate::code::header::harmless;
+use crate::code::header::{harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
 use crate::code::text::quoted;
-use crate::config::{BlockConfig, Host};
+use crate::config::BlockConfig;
 
 /// ms.
 const STEP: u32 = 100;
@@ -29,14 +28,9 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
     let name = identifier(&message.config.name);
     let mut changes = message.untold(Tells { res_data_size: true, ..Tells::default() });
     let (route, whole) = route::write(&message.path);
-    target_changes(&message, &route, whole, &mut changes);
-    if name != message.config.name {
-        changes.push(Change::new(&"name", &message.config.name, &name, Grade::Carried, Why::NameCharacters));
-    }
-    if !message.members().is_empty() {
-        let members = format!("{:?}", message.members());
-        changes.push(Change::new(&"AppCfg.MemberId", &members, &"", Grade::Request, Why::NoMemberSegments));
-    }
+    changes.extend(message.path_changes(&route, whole));
+    changes.extend(message.renamed(&name));
+    changes.extend(message.without_members());
     let mut out = String::new();
     let section = Section { message: &message, name: &name, route: &route };
     section.about(&mut out);
@@ -49,26 +43,16 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
             section.unconnected(timeout, &mut out);
         }
         Some(connection) => {
-            let open = steps(message.plan.ucmm_timeout_ms(), "TargetCfg.UcmmTimeout", &mut changes);
-            let send = steps(connection.timeout_ms, "TargetCfg.ConnMsgTimeout", &mut changes);
-            section.connected(open, send, connection.close, &mut out);
+            let ucmm = message.plan.ucmm_timeout_ms();
+            if ucmm != connection.timeout_ms {
+                let (member, why) = ("TargetCfg.UcmmTimeout", Why::OneTimeout);
+                changes.push(Change::new(&member, &ucmm, &connection.timeout_ms, Grade::Adjusted, why));
+            }
+            let timeout = steps(connection.timeout_ms, "TargetCfg.ConnMsgTimeout", &mut changes);
+            section.connected(timeout, connection.close, &mut out);
         }
     }
     Code { text: out, changes }
-}
-
-fn target_changes(message: &Message<'_>, route: &str, whole: bool, changes: &mut Vec<Change>) {
-    let path = &message.config.target_cfg.path;
-    let mut other = |is_other: bool, grade: Grade, why: Why| {
-        if is_other {
-            changes.push(Change::new(&"TargetCfg.Path", path, &route, grade, why));
-        }
-    };
-    let endpoint = message.endpoint();
-    other(endpoint.is_none(), Grade::Carried, Why::NoBuiltIn);
-    other(endpoint.is_some_and(crate::config::Endpoint::has_unusual_port), Grade::Request, Why::NoTcpPort);
-    other(endpoint.is_some_and(|it| matches!(it.host, Host::Name(_))), Grade::Request, Why::NoHostName);
-    other(!whole, Grade::Request, Why::NoRoute);
 }
 
 /// Tenths of a second, rounded up.
@@ -176,15 +160,18 @@ impl Section<'_> {
         line(out, &self.service());
     }
 
-    fn connected(&self, open: u32, send: u32, close: bool, out: &mut String) {
+    /// The timeout is that of the connection: `CIPSend` has none of its own.
+    fn connected(&self, timeout: u32, close: bool, out: &mut String) {
         let (name, route) = (self.name, quoted(self.route));
         line(out, &format!("{name}_Open(Execute := {name}_Start,\n    RoutePath := {route},"));
         line(
             out,
-            &format!("    TimeOut := UINT#{open}, (* {} ms *)\n    Handle => {name}_Handle);", open * STEP),
+            &format!(
+                "    TimeOut := UINT#{timeout}, (* {} ms *)\n    Handle => {name}_Handle);",
+                timeout * STEP
+            ),
         );
         line(out, &format!("{name}(Execute := {name}_Open.Done,\n    Handle := {name}_Handle,"));
-        line(out, &format!("    TimeOut := UINT#{send}, (* {} ms *)", send * STEP));
         line(out, &self.service());
         if close {
             line(
@@ -195,9 +182,4 @@ impl Section<'_> {
             );
         }
     }
-}
-
-fn line(out: &mut String, text: &str) {
-    // Writing to a String cannot fail.
-    let _ = writeln!(out, "{text}");
 }
