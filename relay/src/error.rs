@@ -173,9 +173,8 @@ impl From<StoreError> for ApiError {
             StoreError::Closed | StoreError::Files(FilesError::Write { .. }) => {
                 Self::Unavailable(error.to_string())
             }
-            StoreError::Files(FilesError::Conflict { .. }) | StoreError::TooMany(_) => {
-                Self::Conflict(error.to_string())
-            }
+            // What somebody has to put right in the folder, or with what is sent.
+            StoreError::Files(_) | StoreError::TooMany(_) => Self::Conflict(error.to_string()),
             error => Self::Internal(error.to_string()),
         }
     }

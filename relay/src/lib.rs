@@ -184,9 +184,21 @@ async fn serve_with(
     result
 }
 
+/// Files of one change that the log names.
+const FILES_TOLD: usize = 8;
+
 /// The folder of the project becomes what is stored, and is kept from now on.
 async fn join(store: &Store, folder: &Path) -> Result<(), RunError> {
     let wrong = |error: &dyn std::fmt::Display| RunError::Project(format!("{}: {error}", folder.display()));
+    let stored = store.last_change().await.map_err(|error| RunError::Store(error.to_string()))?;
+    let repaired = Folder::repair(folder, stored.as_deref()).map_err(|error| wrong(&error))?;
+    for file in repaired.iter().take(FILES_TOLD) {
+        tracing::warn!(
+            file,
+            of = repaired.len(),
+            "project: a change was interrupted, and this file is put in order"
+        );
+    }
     let opened = Folder::open(folder).map_err(|error| wrong(&error))?;
     let read = read(opened.files());
     if !read.errors.is_empty() {
@@ -196,7 +208,7 @@ async fn join(store: &Store, folder: &Path) -> Result<(), RunError> {
         tracing::warn!(file = finding.field, "project: {}", finding.message);
     }
     let version = read.version;
-    let outcome = store.join(opened, read).await.map_err(|error| match error {
+    let outcome = store.join(opened, read, false).await.map_err(|error| match error {
         StoreError::Files(error) => wrong(&error),
         error => RunError::Store(error.to_string()),
     })?;

@@ -1,17 +1,15 @@
 //! `cipdeck project`: the folder of a project, without a relay.
 
-use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use cipdeck_shared::api::Finding;
-use cipdeck_shared::config::project::{Read, read};
 use cipdeck_shared::plan::Severity;
 use clap::{Args, Subcommand};
 use serde_json::json;
 
 use super::{Exit, say};
-use crate::project::{self, FilesError, Folder};
+use crate::project::{self, Folder, Looked};
 
 /// What to do with a project.
 #[derive(Debug, Args)]
@@ -61,16 +59,7 @@ impl Project {
 }
 
 fn check(folder: &Path, json: bool) -> Result<Exit, Exit> {
-    let (read, findings) = match Folder::look(folder) {
-        Ok(files) => found(&files),
-        // Files that are none, such as links.
-        Err(FilesError::Wrong(errors)) => {
-            let read = Read { errors, ..Read::default() };
-            let findings = project::findings(&BTreeMap::new(), &read);
-            (read, findings)
-        }
-        Err(error) => return Err(Exit::usage(&error)),
-    };
+    let Looked { read, findings, .. } = Looked::at(folder).map_err(|error| Exit::usage(&error))?;
     let errors = findings.iter().filter(|finding| finding.severity == Severity::Error).count();
     if json {
         say(&json!({ "findings": findings }).to_string());
@@ -86,8 +75,8 @@ fn check(folder: &Path, json: bool) -> Result<Exit, Exit> {
 }
 
 fn pack(folder: &Path) -> Result<Exit, Exit> {
-    let files = Folder::look(folder).map_err(|error| Exit::usage(&error))?;
-    let (read, findings) = found(&files);
+    let folder = Folder::read(folder).map_err(|error| Exit::usage(&error))?;
+    let (read, findings) = project::found(folder.files());
     wrong(&findings)?;
     let files = cipdeck_shared::config::project::files(&read.project);
     let packed = project::pack(&files).map_err(|error| Exit::internal(&error))?;
@@ -103,7 +92,7 @@ fn unpack(archive: &Path, folder: &Path) -> Result<Exit, Exit> {
     let unreadable = |error| Exit::usage(&format!("cannot read {}: {error}", archive.display()));
     let bytes = std::fs::read(archive).map_err(unreadable)?;
     let (files, ignored) = project::unpack(&bytes).map_err(|error| Exit::usage(&error))?;
-    let (read, findings) = found(&files);
+    let (read, findings) = project::found(&files);
     wrong(&findings)?;
     for file in ignored.iter().chain(&read.ignored) {
         eprintln!("cipdeck: {file} is no file of a project, and is left out");
@@ -111,12 +100,6 @@ fn unpack(archive: &Path, folder: &Path) -> Result<Exit, Exit> {
     let files = cipdeck_shared::config::project::files(&read.project);
     Folder::open(folder).and_then(|folder| folder.fill(files)).map_err(|error| Exit::usage(&error))?;
     Ok(Exit::SUCCESS)
-}
-
-fn found(files: &BTreeMap<String, String>) -> (Read, Vec<Finding>) {
-    let read = read(files);
-    let findings = project::findings(files, &read);
-    (read, findings)
 }
 
 /// What cannot be read is neither packed nor unpacked; wrong numbers can be.

@@ -96,7 +96,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(allow::writes, allow::add_write))
         .routes(routes!(allow::remove_write))
         .routes(routes!(project::export, project::import))
-        .routes(routes!(project::folder))
+        .routes(routes!(project::folder, project::reread))
         .routes(routes!(live::upgrade))
         .routes(routes!(devices::list, devices::create))
         .routes(routes!(devices::show, devices::replace, devices::delete))

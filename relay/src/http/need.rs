@@ -94,6 +94,7 @@ pub(crate) const NEEDS: &[(&str, &str, Need)] = &[
     ("GET", "/api/v1/project", Look),
     ("POST", "/api/v1/project", Edit),
     ("GET", "/api/v1/project/folder", Look),
+    ("POST", "/api/v1/project/folder", Edit),
     ("GET", "/api/v1/devices", Look),
     ("POST", "/api/v1/devices", Edit),
     ("GET", "/api/v1/devices/{id}", Look),

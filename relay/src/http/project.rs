@@ -10,7 +10,7 @@ use super::caller::Caller;
 use super::extract::Archive;
 use crate::app::App;
 use crate::error::ApiError;
-use crate::project;
+use crate::project::{self, Wish};
 
 /// The one address whose body is no JSON.
 pub(super) const ROUTE: &str = "/api/v1/project";
@@ -63,17 +63,48 @@ pub(super) async fn import(
     uri: Uri,
     Archive(archive): Archive,
 ) -> Result<Answer<ProjectImport>, ApiError> {
-    project::import(&app, &actor, archive, is_preview(&uri)?).await.map(Answer)
+    project::import(&app, &actor, archive, wish(&uri, &["preview"])?.is_preview).await.map(Answer)
 }
 
-/// `?preview=true`. Anything else could be meant as that, and would store something.
-fn is_preview(uri: &Uri) -> Result<bool, ApiError> {
-    let unreadable =
-        || ApiError::Unreadable("there is one parameter here: preview=true or preview=false".to_owned());
+/// The folder is read again, after somebody else has changed its files: what is new is created, what differs is changed,
+/// what has no file any more is removed, and what of it runs is stopped. All of it is stored, or nothing.
+#[utoipa::path(
+    post,
+    path = "/project/folder",
+    tag = "project",
+    params(
+        ("preview" = Option<bool>, Query, description = "Tells what would be done, and what is wrong, and stores nothing"),
+        ("seen" = Option<String>, Query, description = "`seen` of a preview: if the files have been changed since, nothing is stored"),
+    ),
+    extensions(("x-cipdeck-problems" = json!(["conflict", "findings", "unavailable"]))),
+    responses((status = 200, description = "What was done, or would be", body = ProjectImport))
+)]
+pub(super) async fn reread(
+    State(app): State<App>,
+    Caller(actor): Caller,
+    uri: Uri,
+) -> Result<Answer<ProjectImport>, ApiError> {
+    project::reread(&app, &actor, wish(&uri, &["preview", "seen"])?).await.map(Answer)
+}
+
+/// `?preview=true&seen=…`, as far as `known`. Anything else could be meant as that, and would store something.
+fn wish(uri: &Uri, known: &[&str]) -> Result<Wish, ApiError> {
+    let unreadable = || {
+        let known = known.join(" and ");
+        ApiError::Unreadable(format!("parameters here are {known}, each once; preview is true or false"))
+    };
     let Query(pairs) = Query::<Vec<(String, String)>>::try_from_uri(uri).map_err(|_| unreadable())?;
-    match pairs.as_slice() {
-        [] => Ok(false),
-        [(name, value)] if name == "preview" => value.parse().map_err(|_| unreadable()),
-        _ => Err(unreadable()),
+    let mut wish = Wish::default();
+    let mut given: Vec<&str> = Vec::new();
+    for (name, value) in &pairs {
+        if !known.contains(&&**name) || given.contains(&&**name) {
+            return Err(unreadable());
+        }
+        given.push(name);
+        match name.as_str() {
+            "preview" => wish.is_preview = value.parse().map_err(|_| unreadable())?,
+            _ => wish.seen = Some(value.clone()),
+        }
     }
+    Ok(wish)
 }

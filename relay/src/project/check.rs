@@ -1,25 +1,61 @@
 //! What is wrong with what files say, beside their form: the findings that the page shows, each with its place.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use cipdeck_shared::api::Finding;
 use cipdeck_shared::config::project::{
-    ProjectError, ProjectGroup, ProjectVariable, Read, addresses, block_path, group_path, locate, parents,
-    target_path,
+    Places, ProjectError, ProjectGroup, ProjectVariable, Read, addresses, block_path, group_path, parents,
+    read, target_path,
 };
 use cipdeck_shared::config::{DeviceId, GroupConfig, GroupId, Variable, VariableId};
 use cipdeck_shared::plan::plant::{self, MAX_IN_GROUP, PlantFinding};
 use cipdeck_shared::plan::{MessagePlan, Severity};
 use cipdeck_shared::tag::Types;
 
+use super::{FilesError, Folder};
 use crate::plant::{MAX_DEVICES, MAX_GROUPS};
 
 /// The rule of what is wrong with a file as a file.
 pub(crate) const FILE_RULE: &str = "project_file";
 
+/// A folder as it is, and what is to be said of it.
+#[derive(Debug)]
+pub(crate) struct Looked {
+    /// None, if something in it is no file of a project at all, such as a link.
+    pub(crate) folder: Option<Folder>,
+    pub(crate) read: Read,
+    pub(crate) findings: Vec<Finding>,
+}
+
+impl Looked {
+    /// Reads a folder that is there.
+    pub(crate) fn at(root: &Path) -> Result<Self, FilesError> {
+        match Folder::read(root) {
+            Ok(folder) => {
+                let (read, findings) = found(folder.files());
+                Ok(Self { folder: Some(folder), read, findings })
+            }
+            Err(FilesError::Wrong(errors)) => {
+                let read = Read { errors, ..Read::default() };
+                let findings = findings(&BTreeMap::new(), &read);
+                Ok(Self { folder: None, read, findings })
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// What files say, and what is to be said of them.
+pub(crate) fn found(files: &BTreeMap<String, String>) -> (Read, Vec<Finding>) {
+    let read = read(files);
+    let findings = findings(files, &read);
+    (read, findings)
+}
+
 /// Everything that is wrong, and everything that somebody should know, by file. `field` is the place.
 pub(crate) fn findings(files: &BTreeMap<String, String>, read: &Read) -> Vec<Finding> {
-    let mut found = Found { files, findings: Vec::new() };
+    let mut found = Found { files, findings: Vec::new(), at: None };
     for error in &read.errors {
         found.of_files(error, Severity::Error);
     }
@@ -45,13 +81,27 @@ pub(crate) fn findings(files: &BTreeMap<String, String>, read: &Read) -> Vec<Fin
             found.group(&group_path(file, name), group, &types);
         }
     }
+    found.leave();
     found.findings
 }
 
 struct Found<'a> {
     files: &'a BTreeMap<String, String>,
     findings: Vec<Finding>,
+    at: Option<At<'a>>,
 }
+
+/// The file that is looked at.
+struct At<'a> {
+    path: String,
+    places: Option<Places<'a>>,
+    told: usize,
+    /// What is not told one by one, and the worst of it.
+    more: Option<(usize, Severity)>,
+}
+
+/// Of one file so much is told one by one.
+const MAX_TOLD: usize = 100;
 
 impl Found<'_> {
     fn of_files(&mut self, error: &ProjectError, severity: Severity) {
@@ -113,9 +163,27 @@ impl Found<'_> {
 
     /// A finding about a member of a file, at its place.
     fn add(&mut self, path: &str, field: &str, severity: Severity, rule: &str, words: &str) {
-        let place = self.files.get(path).and_then(|text| locate(text, field));
+        if self.at.as_ref().is_none_or(|at| at.path != path) {
+            self.leave();
+            let places = self.files.get(path).and_then(|text| Places::of(text));
+            self.at = Some(At { path: path.to_owned(), places, told: 0, more: None });
+        }
+        let Some(at) = &mut self.at else { return };
+        at.told += 1;
+        if at.told > MAX_TOLD {
+            let (count, worst) = at.more.unwrap_or((0, severity));
+            at.more = Some((count + 1, worst.min(severity)));
+            return;
+        }
+        let place = at.places.as_ref().map(|places| places.locate(field));
         let place = place.map(|place| format!(":{}:{}", place.line, place.column)).unwrap_or_default();
         self.push(format!("{path}{place}"), severity, rule, format!("{field}: {words}"));
+    }
+
+    /// All of a file has been said.
+    fn leave(&mut self) {
+        let Some(At { path, more: Some((count, worst)), .. }) = self.at.take() else { return };
+        self.push(path, worst, "more", format!("and {count} more in this file"));
     }
 
     fn push(&mut self, field: String, severity: Severity, rule: &str, message: String) {

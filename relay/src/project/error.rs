@@ -7,8 +7,9 @@ use cipdeck_shared::config::project::ProjectError;
 pub(crate) enum FilesError {
     /// Somebody else was there.
     #[error(
-        "{file} {how} since the relay has read it, and nothing was stored. To go on with the folder as it is, start the \
-         relay again; otherwise put the file back (git checkout -- {file}) and try again"
+        "{file} {how} since the relay has read it, and nothing was stored. To go on with the folder as it is, let the relay \
+         read it again: on the page \"Project files\", or with POST /api/v1/project/folder; otherwise put the file back \
+         (git checkout -- {file}) and try again"
     )]
     Conflict {
         /// Which file.
@@ -19,6 +20,32 @@ pub(crate) enum FilesError {
     /// The system says no.
     #[error("{file} in the project's folder cannot be written, and nothing was stored: {source}")]
     Write {
+        /// Which file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The relay has ended in the middle of a change, or a relay is in the middle of it.
+    #[error(
+        "a change of several files is under way in this folder, or was interrupted (.cipdeck-change.json says which): \
+         cipdeck serve --project with the same --data puts it right when it starts"
+    )]
+    Unfinished,
+    /// What is left of a change that was interrupted cannot be taken back.
+    #[error(
+        "a change of several files was interrupted, and somebody has changed {file} since: put the files in order yourself \
+         (git status shows them), then remove .cipdeck-change.json"
+    )]
+    Torn {
+        /// Which file.
+        file: String,
+    },
+    /// What tells of such a change cannot be used.
+    #[error(
+        "{file} tells of a change that was interrupted, and cannot be used: {source}. Put the files in order yourself \
+         (git status shows them), then remove it"
+    )]
+    Journal {
         /// Which file.
         file: String,
         /// Why.

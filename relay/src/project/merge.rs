@@ -7,8 +7,9 @@ use cipdeck_shared::config::project::{
 use cipdeck_shared::config::{BlockConfig, BlockId, DeviceId, GroupConfig, GroupId};
 use rusqlite::Connection;
 
-use super::Touched;
+use super::difference::{difference, together};
 use super::variables::variables;
+use super::{Touched, target_of};
 use crate::draft::normalised;
 use crate::plant::{MAX_DEVICES, MAX_GROUPS};
 use crate::store::{
@@ -68,7 +69,8 @@ impl Merge<'_> {
         for (_, one) in left(&stored.blocks, &matches) {
             let (id, name) = (one.block.id, one.block.config.name());
             let how = self.left(Table::Block, id.0, one.file.as_deref())?;
-            self.tell(ProjectPartKind::Block, how, name, id.to_string(), one.file.as_deref().map(block_path));
+            let file = one.file.as_deref().map(block_path);
+            self.tell(ProjectPartKind::Block, how, name, id.to_string(), file, None);
             self.touch(how, Touched::Block(id));
         }
         Ok(())
@@ -90,7 +92,8 @@ impl Merge<'_> {
         };
         let id = BlockId(id);
         self.name(Table::Block, id.0, file, found.and_then(|found| found.file.as_deref()))?;
-        self.tell(ProjectPartKind::Block, how, config.name(), id.to_string(), Some(block_path(file)));
+        let detail = found.and_then(|found| difference(&found.block.config, config));
+        self.tell(ProjectPartKind::Block, how, config.name(), id.to_string(), Some(block_path(file)), detail);
         self.touch(how, Touched::Block(id));
         Ok(())
     }
@@ -107,13 +110,11 @@ impl Merge<'_> {
         for (_, one) in left(&stored.targets, &matches) {
             let (id, file) = (one.device.id, one.file.as_deref());
             let how = self.left(Table::Device, id.0, file)?;
-            self.tell(
-                ProjectPartKind::Target,
-                how,
-                &one.device.config.name,
-                id.to_string(),
-                file.map(target_path),
-            );
+            let groups: Vec<_> = one.groups.iter().map(|group| group.group.config.name.as_str()).collect();
+            let is_more = how == ProjectChange::Removed && !groups.is_empty();
+            let detail = is_more.then(|| format!("with its groups: {}", groups.join(", ")));
+            let name = &one.device.config.name;
+            self.tell(ProjectPartKind::Target, how, name, id.to_string(), file.map(target_path), detail);
             self.touch(how, Touched::Device(id));
         }
         Ok(())
@@ -141,7 +142,9 @@ impl Merge<'_> {
         table.set_extra(self.connection, id, &target.extra)?;
         self.name(table, id, file, found.and_then(|found| found.file.as_deref()))?;
         let id = DeviceId(id);
-        self.tell(ProjectPartKind::Target, how, &target.config.name, id.to_string(), Some(target_path(file)));
+        let detail = found.and_then(|found| difference(&target_of(found), target));
+        let name = &target.config.name;
+        self.tell(ProjectPartKind::Target, how, name, id.to_string(), Some(target_path(file)), detail);
         self.touch(how, Touched::Device(id));
         let groups = found.map_or(&[][..], |found| found.groups.as_slice());
         let there: Vec<_> =
@@ -159,7 +162,10 @@ impl Merge<'_> {
             let (id, name) = (one.group.id, one.file.as_deref());
             let how = self.left(Table::Group, id.0, name)?;
             let path = name.map(|name| group_path(file, name));
-            self.tell(ProjectPartKind::Group, how, &one.group.config.name, id.to_string(), path);
+            let count = one.variables.len();
+            let is_more = how == ProjectChange::Removed && count > 0;
+            let detail = is_more.then(|| format!("variables: {count} removed"));
+            self.tell(ProjectPartKind::Group, how, &one.group.config.name, id.to_string(), path, detail);
             self.touch(how, Touched::Group(id));
         }
         Ok(())
@@ -197,10 +203,11 @@ impl Merge<'_> {
             }
             Some(_) => ProjectChange::Changed,
         };
-        self.tell(ProjectPartKind::Group, how, name, id.to_string(), Some(path.to_owned()));
-        if let Some(part) = self.outcome.parts.last_mut() {
-            part.detail = counts.words();
-        }
+        let own = found.map(|found| {
+            together([difference(&found.group.config, &config), difference(&found.extra, extra)])
+        });
+        let detail = together([own.flatten(), counts.words()]);
+        self.tell(ProjectPartKind::Group, how, name, id.to_string(), Some(path.to_owned()), detail);
         self.touch(how, Touched::Group(id));
         Ok(())
     }
@@ -268,8 +275,9 @@ impl Merge<'_> {
         name: &str,
         id: String,
         file: Option<String>,
+        detail: Option<String>,
     ) {
-        let part = ProjectPart { what, how, name: name.to_owned(), id: Some(id), file, detail: None };
+        let part = ProjectPart { what, how, name: name.to_owned(), id: Some(id), file, detail };
         self.outcome.parts.push(part);
     }
 

@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 
 use cipdeck_shared::config::project::{
-    self as files, PROJECT_HEAD, block_path, file_name, free_file_name, group_path, is_portable, target_path,
+    self as files, PROJECT_HEAD, Project, block_path, file_name, free_file_name, group_path, is_portable,
+    target_path,
 };
 use cipdeck_shared::config::{BlockId, DeviceId, GroupId};
 use rusqlite::{Connection, Transaction};
 
+use super::journal::name_of_a_change;
 use super::wanted::{Wanted, in_the_order_of, stem};
 use super::{FilesError, Folder, How, Outcome, group_of, merge, target_of};
 use crate::draft::normalised;
 use crate::store::{
-    Scope, StoreError, StoredBlock, StoredGroup, StoredTarget, Table, load_project, put_head,
+    Scope, StoreError, StoredBlock, StoredGroup, StoredTarget, Table, load_project, put_change, put_head,
 };
 
 /// What a change is about.
@@ -41,11 +43,7 @@ impl Mirror {
     ) -> Result<(Self, Outcome), StoreError> {
         let is_project = folder.files().contains_key(PROJECT_HEAD);
         let transaction = connection.transaction()?;
-        let was_joined = load_project(&transaction, Scope::All)?.head.is_some();
-        if was_joined && !is_project {
-            return Err(StoreError::Files(FilesError::NotTheProject));
-        }
-        let outcome = merge(&transaction, &read.project, How::Folder { was_joined })?;
+        let outcome = follow(&transaction, is_project, &read.project)?;
         let mut mirror = Self { folder, places: BTreeMap::new() };
         let mut wanted = Wanted::default();
         let mut head = read.project.head.clone();
@@ -67,6 +65,16 @@ impl Mirror {
         }
         mirror.end(transaction, wanted)?;
         Ok((mirror, outcome))
+    }
+
+    /// What [`join`](Self::join) would do.
+    pub(crate) fn look(
+        connection: &mut Connection,
+        folder: &Folder,
+        project: &Project,
+    ) -> Result<Outcome, StoreError> {
+        // Dropped without its end, the transaction changes nothing.
+        follow(&connection.transaction()?, folder.files().contains_key(PROJECT_HEAD), project)
     }
 
     /// Writes the files of what was touched and ends the transaction: both, or neither.
@@ -118,11 +126,16 @@ impl Mirror {
                 Touched::Group(id) => Table::Group.set_file(&transaction, id.0, Some(name))?,
             }
         }
-        let undo = self.folder.apply(&wanted.files).map_err(StoreError::Files)?;
+        let change = name_of_a_change()?;
+        if wanted.files.len() > 1 {
+            put_change(&transaction, &change)?;
+        }
+        let undo = self.folder.apply(&wanted.files, &change).map_err(StoreError::Files)?;
         if let Err(error) = transaction.commit() {
             self.folder.undo(undo);
             return Err(error.into());
         }
+        self.folder.done();
         self.folder.adopt(wanted.files);
         for (touched, path) in wanted.places {
             match path {
@@ -280,4 +293,13 @@ impl Mirror {
             _ => path(&free_file_name(name, is_taken)),
         }
     }
+}
+
+/// What is stored becomes what the folder says.
+fn follow(transaction: &Transaction<'_>, is_project: bool, project: &Project) -> Result<Outcome, StoreError> {
+    let was_joined = load_project(transaction, Scope::All)?.head.is_some();
+    if was_joined && !is_project {
+        return Err(StoreError::Files(FilesError::NotTheProject));
+    }
+    merge(transaction, project, How::Folder { was_joined })
 }

@@ -5,9 +5,11 @@
 
 mod archive;
 mod check;
+mod difference;
 mod error;
 mod folder;
 mod import;
+mod journal;
 mod merge;
 mod mirror;
 mod snapshot;
@@ -16,10 +18,10 @@ mod walk;
 mod wanted;
 
 pub(crate) use self::archive::{ArchiveError, MAX_ARCHIVE, pack, unpack};
-pub(crate) use self::check::{FILE_RULE, findings};
+pub(crate) use self::check::{FILE_RULE, Looked, findings, found};
 pub(crate) use self::error::FilesError;
 pub(crate) use self::folder::Folder;
-pub(crate) use self::import::import;
+pub(crate) use self::import::{Wish, import, reread};
 pub(crate) use self::merge::{How, Outcome, merge};
 pub(crate) use self::mirror::{Mirror, Touched};
 pub(crate) use self::snapshot::{group_of, project_of, target_of};

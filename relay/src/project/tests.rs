@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -6,6 +7,8 @@ use cipdeck_shared::config::{
     BlockConfig, Device, DeviceConfig, DeviceId, GroupConfig, MsgCipGeneric, VariableConfig,
 };
 
+use super::folder::steps;
+use super::journal::{JOURNAL, Journal};
 use super::*;
 use crate::store::{Change, Fresh, Store, StoreError};
 
@@ -18,7 +21,7 @@ async fn joined(data: Option<&Path>, root: &Path) -> (Store, Outcome) {
     let folder = Folder::open(root).unwrap();
     let read = read(folder.files());
     assert!(read.errors.is_empty(), "{:?}", read.errors);
-    let outcome = store.join(folder, read).await.unwrap();
+    let outcome = store.join(folder, read, false).await.unwrap();
     (store, outcome)
 }
 
@@ -103,6 +106,85 @@ async fn a_change_of_several_files_is_written_whole_or_not_at_all() {
     assert_eq!(files(root.path()), before);
     store.put_device(device).await.unwrap();
     assert_eq!(files(root.path()), ["cipdeck.json", "groups/y/a.json", "groups/y/b.json", "targets/y.json"]);
+}
+
+/// Everything in a folder, also what is hidden.
+fn everything(root: &Path) -> BTreeMap<String, String> {
+    let mut all = BTreeMap::new();
+    let mut open = vec![root.to_owned()];
+    while let Some(at) = open.pop() {
+        for entry in fs::read_dir(at).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
+                all.insert(name, fs::read_to_string(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+fn put(root: &Path, path: &str, text: Option<&str>) {
+    let file = root.join(path);
+    match text {
+        Some(text) => {
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, text).unwrap();
+        }
+        None => fs::remove_file(file).unwrap(),
+    }
+}
+
+#[tokio::test]
+async fn wherever_a_rename_is_interrupted_it_is_taken_back_or_was_done() {
+    let root = tempfile::tempdir().unwrap();
+    let (store, _) = joined(None, root.path()).await;
+    let group = |name: &str| (GroupConfig::new(DeviceId(0), name), Vec::new());
+    let made = store.add_device(DeviceConfig::new("x", "0,0"), vec![group("a"), group("b")]).await.unwrap();
+    let before = everything(root.path());
+    let device = Device { id: made.devices[0].id, revision: 2, config: DeviceConfig::new("y", "0,0") };
+    store.put_device(device).await.unwrap();
+    let after = everything(root.path());
+    assert!(!after.keys().any(|path| path.starts_with('.')), "{after:?}");
+    let change = store.last_change().await.unwrap().expect("several files were changed");
+
+    let files = before.keys().chain(after.keys()).filter(|path| before.get(*path) != after.get(*path));
+    let changes: BTreeMap<_, _> = files.map(|path| (path.clone(), after.get(path).cloned())).collect();
+    assert_eq!(changes.len(), 6);
+    let journal = Journal::of(&change, &before, &changes);
+    for done in 0..=changes.len() {
+        let root = tempfile::tempdir().unwrap();
+        for (path, text) in &before {
+            put(root.path(), path, Some(text));
+        }
+        put(root.path(), JOURNAL, Some(&journal.text().unwrap()));
+        put(root.path(), "targets/.y.json.new", Some("{"));
+        for (path, text) in steps(&changes).take(done) {
+            put(root.path(), path, text.as_deref());
+        }
+        let refused = Folder::open(root.path()).unwrap_err().to_string();
+        assert!(refused.contains(JOURNAL), "{refused}");
+        let repaired = Folder::repair(root.path(), Some("another change")).unwrap();
+        assert_eq!(repaired.len(), 6, "after {done} steps");
+        Folder::open(root.path()).unwrap();
+        assert_eq!(everything(root.path()), before, "after {done} steps");
+        assert_eq!(Folder::repair(root.path(), None).unwrap(), Vec::<String>::new());
+    }
+
+    // The database has it: only the journal is too much.
+    put(root.path(), JOURNAL, Some(&journal.text().unwrap()));
+    assert_eq!(Folder::repair(root.path(), Some(&change)).unwrap().len(), 6);
+    assert_eq!(everything(root.path()), after);
+
+    // Somebody has gone on meanwhile: nothing is touched.
+    put(root.path(), JOURNAL, Some(&journal.text().unwrap()));
+    put(root.path(), "targets/y.json", Some("{}"));
+    let there = everything(root.path());
+    let refused = Folder::repair(root.path(), None).unwrap_err().to_string();
+    assert!(refused.contains("somebody has changed targets/y.json since"), "{refused}");
+    assert_eq!(everything(root.path()), there);
 }
 
 #[cfg(unix)]
@@ -195,7 +277,7 @@ async fn ids_stay_with_their_files_and_names() {
     let store = Store::open(Some(&path)).await.unwrap();
     let empty = Folder::open(&root.path().join("empty")).unwrap();
     let read = read(empty.files());
-    let refused = store.join(empty, read).await.unwrap_err().to_string();
+    let refused = store.join(empty, read, false).await.unwrap_err().to_string();
     assert!(refused.contains("is it the right folder?"), "{refused}");
     assert_eq!(store.load().await.unwrap().len(), 4);
 }

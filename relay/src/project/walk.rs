@@ -16,18 +16,24 @@ const FOLDERS: [&str; 3] = ["blocks", "targets", "groups"];
 /// Folders in folders that are looked into. Files belong at most two deep; what is deeper is told as misplaced.
 const MAX_DEPTH: usize = 4;
 
+/// How files end that are written beside others; they begin with a dot.
+pub(super) const BESIDE: &str = ".json.new";
+
 /// Reads the folder.
 pub(super) struct Walk<'a> {
     root: &'a Path,
     pub(super) known: BTreeMap<String, String>,
     bytes: usize,
     pub(super) errors: Vec<ProjectError>,
+    /// What was written beside a file and never put in its place: the relay was killed.
+    pub(super) leftovers: Vec<PathBuf>,
 }
 
 impl<'a> Walk<'a> {
     /// Reads everything that could belong to a project.
     pub(super) fn through(root: &'a Path) -> Self {
-        let mut walk = Self { root, known: BTreeMap::new(), bytes: 0, errors: Vec::new() };
+        let mut walk =
+            Self { root, known: BTreeMap::new(), bytes: 0, errors: Vec::new(), leftovers: Vec::new() };
         walk.top();
         walk
     }
@@ -81,7 +87,11 @@ impl<'a> Walk<'a> {
             Ok(found) => {
                 for entry in found {
                     match entry.file_name().into_string() {
-                        Ok(name) if name.starts_with('.') => {}
+                        Ok(name) if name.starts_with('.') => {
+                            if name.ends_with(BESIDE) {
+                                self.leftovers.push(entry.path());
+                            }
+                        }
                         Ok(name) => entries.push((name, entry.path())),
                         Err(name) => {
                             let name = name.to_string_lossy();

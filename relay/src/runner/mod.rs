@@ -165,6 +165,22 @@ impl Runner {
         });
     }
 
+    /// Stops a block: IN falls, and what is under way is cancelled. Whether there was anything to stop.
+    pub(crate) fn halt(&self, block: BlockId) -> bool {
+        self.0.with(|state, now| {
+            let was_on = state.engine.is_on(block);
+            // A block that is not there has nothing to stop.
+            let _ = state.engine.set_in(block, false, now);
+            let _ = state.engine.cancel(block, now);
+            was_on
+        })
+    }
+
+    /// Whether a block would have anything to stop.
+    pub(crate) fn is_on(&self, block: BlockId) -> bool {
+        lock(&self.0.state).engine.is_on(block)
+    }
+
     /// How a block looks, with all edges of its last message.
     pub(crate) fn view(&self, block: BlockId) -> Option<BlockView> {
         lock(&self.0.state).engine.view(block)

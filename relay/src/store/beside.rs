@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use cipdeck_shared::config::project::{self as files, Project};
 use rusqlite::{Connection, Transaction};
 
+use super::project::change;
 use super::{Store, StoreError};
 use crate::project::{self, Folder, How, Mirror, Outcome, Touched};
 use crate::runner::lock;
@@ -26,17 +27,33 @@ impl Beside {
 }
 
 impl Store {
-    /// From now on the folder is kept with every change. Now it is the truth: what is stored becomes what it says.
-    pub(crate) async fn join(&self, folder: Folder, read: files::Read) -> Result<Outcome, StoreError> {
+    /// The folder is the truth: what is stored becomes what it says, and from now on it is kept with every change. Where it
+    /// is kept already it has been read again. A preview tells what that would do.
+    pub(crate) async fn join(
+        &self,
+        folder: Folder,
+        read: files::Read,
+        is_preview: bool,
+    ) -> Result<Outcome, StoreError> {
         let beside = self.1.clone();
         self.0
             .call(move |connection| {
+                if is_preview {
+                    return Mirror::look(connection, &folder, &read.project);
+                }
                 let (mirror, outcome) = Mirror::join(connection, folder, &read)?;
-                // It is called once, before anybody else has the store.
-                let _ = beside.0.set(Mutex::new(mirror));
+                match beside.0.get() {
+                    Some(there) => *lock(there) = mirror,
+                    None => drop(beside.0.set(Mutex::new(mirror))),
+                }
                 Ok(outcome)
             })
             .await
+    }
+
+    /// What the last change was called that was written to several files and stored: [`Folder::repair`] needs it.
+    pub(crate) async fn last_change(&self) -> Result<Option<String>, StoreError> {
+        self.0.call(|connection| change(connection)).await
     }
 
     /// The files of the project: those of the folder, where there is one.

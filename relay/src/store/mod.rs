@@ -22,7 +22,7 @@ pub(crate) use self::blocks::Change;
 pub(crate) use self::error::StoreError;
 pub(crate) use self::plant::{Fresh, StoredPlant};
 pub(crate) use self::project::{
-    Scope, StoredBlock, StoredGroup, StoredProject, StoredTarget, Table, load_project, put_head,
+    Scope, StoredBlock, StoredGroup, StoredProject, StoredTarget, Table, load_project, put_change, put_head,
 };
 pub(crate) use self::schema::migrate;
 use self::writer::Writer;

@@ -152,6 +152,18 @@ pub(crate) fn put_head(connection: &Connection, head: &ProjectHead) -> Result<()
     Ok(())
 }
 
+/// What the last change of several files was called.
+pub(crate) fn put_change(connection: &Connection, change: &str) -> Result<(), StoreError> {
+    connection.execute("UPDATE project SET change = ?1", [change])?;
+    Ok(())
+}
+
+/// See [`put_change`].
+pub(super) fn change(connection: &Connection) -> Result<Option<String>, StoreError> {
+    let change = connection.query_row("SELECT change FROM project", (), |row| row.get(0)).optional()?;
+    Ok(change.flatten())
+}
+
 /// One of the four tables of a project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Table {

@@ -13,6 +13,7 @@ const MIGRATIONS: &[&str] = &[
     include_str!("migrations/0003_access.sql"),
     include_str!("migrations/0004_plant.sql"),
     include_str!("migrations/0005_project.sql"),
+    include_str!("migrations/0006_project_change.sql"),
 ];
 
 /// How long a backup may keep the database from what only one can do.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rest::Finding;
 
-/// `POST /api/v1/project`, and with `?preview=true` what it would answer.
+/// `POST /api/v1/project` and `POST /api/v1/project/folder`, and with `?preview=true` what they would answer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ProjectImport {
@@ -21,6 +21,10 @@ pub struct ProjectImport {
     pub findings: Vec<Finding>,
     /// Files that are none of a project's.
     pub ignored: Vec<String>,
+    /// What the files of the folder are, in few characters: `seen` of a request that means these and no others. None of an
+    /// archive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen: Option<String>,
 }
 
 /// `GET /api/v1/project/folder`: what `serve --project` was given.

@@ -25,6 +25,8 @@ mod peers;
 mod permit;
 mod persistence;
 mod project;
+mod project_command;
+mod project_folder;
 mod random_inputs;
 mod reconnect;
 mod record;

@@ -372,7 +372,7 @@ async fn a_full_disk_refuses_the_change_and_leaves_the_files_whole() {
 }
 
 /// A device `NX 1` with a group `line 4` of two variables; the group.
-async fn plant(rest: &Rest) -> String {
+pub(super) async fn plant(rest: &Rest) -> String {
     let device = rest.post("devices", &json!({ "name": "NX 1", "path": "0,0" })).await;
     assert_eq!(device.status, 201, "{device:?}");
     let group = rest.post("groups", &json!({ "device": device.body["id"], "name": "line 4" })).await;
@@ -388,7 +388,7 @@ async fn plant(rest: &Rest) -> String {
 }
 
 /// Reads something, changes it, and stores it.
-async fn save(rest: &Rest, path: &str, change: impl FnOnce(&mut Value)) {
+pub(super) async fn save(rest: &Rest, path: &str, change: impl FnOnce(&mut Value)) {
     let mut body = rest.get(path).await.body;
     change(&mut body);
     let saved = rest.put(path, &body).await;
@@ -401,11 +401,11 @@ async fn export(rest: &Rest) -> Vec<u8> {
     answer.bytes().await.expect("an archive").to_vec()
 }
 
-async fn import(rest: &Rest, path: &str, archive: Vec<u8>) -> Reply {
+pub(super) async fn import(rest: &Rest, path: &str, archive: Vec<u8>) -> Reply {
     Rest::send(rest.request(Method::POST, path).header("content-type", "application/zip").body(archive)).await
 }
 
-fn zip(files: &[(&str, &str)]) -> Vec<u8> {
+pub(super) fn zip(files: &[(&str, &str)]) -> Vec<u8> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for (path, text) in files {
         archive.start_file(*path, SimpleFileOptions::default()).expect("a file");
@@ -414,19 +414,19 @@ fn zip(files: &[(&str, &str)]) -> Vec<u8> {
     archive.finish().expect("an archive").into_inner()
 }
 
-async fn serve(project: &Path, data: Option<&Path>) -> Ended {
+pub(super) async fn serve(project: &Path, data: Option<&Path>) -> Ended {
     let mut arguments = vec!["serve", "--listen", "127.0.0.1:0", "--project", utf8(project)];
     arguments.extend(data.into_iter().flat_map(|data| ["--data", utf8(data)]));
     cipdeck(&arguments).await
 }
 
-async fn stop(relay: &mut Service) {
+pub(super) async fn stop(relay: &mut Service) {
     relay.process.interrupt();
     let status = relay.process.ended(PATIENCE).await;
     assert!(status.success(), "{status}\n{}", relay.process.output().join("\n"));
 }
 
-async fn git(folder: &TempDir, arguments: &[&str]) -> String {
+pub(super) async fn git(folder: &TempDir, arguments: &[&str]) -> String {
     let own = [
         "-C",
         utf8(folder.path()),
@@ -442,11 +442,11 @@ async fn git(folder: &TempDir, arguments: &[&str]) -> String {
     ended.stdout
 }
 
-async fn commit(folder: &TempDir) {
+pub(super) async fn commit(folder: &TempDir) {
     git(folder, &["add", "-A"]).await;
     git(folder, &["commit", "-q", "-m", "as it is"]).await;
 }
 
-fn utf8(path: &Path) -> &str {
+pub(super) fn utf8(path: &Path) -> &str {
     path.to_str().expect("a path in UTF-8")
 }

@@ -3,7 +3,7 @@
 use alloc::string::String;
 use core::fmt;
 
-use super::document::Position;
+use super::place::Position;
 use super::{MAX_PROJECT_BYTES, MAX_PROJECT_FILE, MAX_PROJECT_FILES, PROJECT_VERSION};
 
 /// Something that is wrong, and where.
@@ -79,6 +79,9 @@ pub enum ProjectErrorKind {
     /// A member that is not kept.
     #[error("the member `{0}` is given by the relay: it is not kept in a project")]
     Given(&'static str),
+    /// What is not told one by one.
+    #[error("and {0} more in this file")]
+    More(usize),
     /// A link: what it leads to is not a part of the project.
     #[error("this is a link, and a project has none: put the file itself here")]
     Link,

@@ -12,10 +12,14 @@
 //! does not know are kept. Numbers with fractions are kept to the last digit where serde_json is built with
 //! `float_roundtrip`, as the relay does.
 
+mod culprit;
 mod document;
 mod error;
 mod name;
+mod place;
 mod read;
+mod reader;
+mod scan;
 mod variables;
 mod write;
 
@@ -25,9 +29,10 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::document::{Position, locate};
+pub use self::document::Places;
 pub use self::error::{ProjectError, ProjectErrorKind};
 pub use self::name::{file_name, free_file_name, is_portable};
+pub use self::place::Position;
 pub use self::read::{Read, block, group, read, target};
 pub use self::variables::{addresses, parents};
 pub use self::write::{

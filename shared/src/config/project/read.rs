@@ -1,19 +1,17 @@
 //! The files of a project → the project, and everything that is wrong with them.
 
 use alloc::borrow::ToOwned;
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use serde_json::Value;
-
 use super::super::block_config::BlockConfig;
-use super::document::{Document, Inside, Member, Node, Position};
+use super::culprit::Search;
 use super::error::{ProjectError, ProjectErrorKind as Kind};
-use super::variables::parents;
+use super::place::Position;
+use super::reader::{self, Notes};
 use super::{
-    MAX_PROJECT_BYTES, MAX_PROJECT_FILE, MAX_PROJECT_FILES, PROJECT_HEAD, PROJECT_VERSION, Project,
-    ProjectGroup, ProjectHead, ProjectTarget, ProjectVariable, target_path,
+    MAX_PROJECT_BYTES, MAX_PROJECT_FILES, PROJECT_HEAD, Project, ProjectGroup, ProjectTarget, target_path,
 };
 
 /// What files say.
@@ -61,52 +59,21 @@ pub fn read(files: &BTreeMap<String, String>) -> Read {
 
 /// Reads one block, wherever it comes from: also one with the id and the revision that it had in a relay.
 pub fn block(file: &str, text: &str) -> Result<BlockConfig, Vec<ProjectError>> {
-    let mut reader = Reader::default();
-    let block = reader.block(file, text);
-    block.ok_or(reader.read.errors)
+    let (block, notes) = reader::block((file, text), &mut Search::default(), true);
+    block.ok_or(notes.errors)
 }
 
 /// Reads a device's file, without its groups.
 pub fn target(file: &str, text: &str) -> Result<ProjectTarget, Vec<ProjectError>> {
-    let mut reader = Reader::default();
-    reader.target(file, String::new(), text);
-    reader.read.project.targets.into_values().next().ok_or(reader.read.errors)
+    let (target, notes) = reader::target((file, text), &mut Search::default());
+    target.ok_or(notes.errors)
 }
 
 /// Reads a group's file.
 pub fn group(file: &str, text: &str) -> Result<ProjectGroup, Vec<ProjectError>> {
-    let mut reader = Reader::default();
-    reader.group(file, "", String::new(), text);
-    let group = reader.groups.pop().map(|(.., group)| group);
-    if reader.read.errors.is_empty() { group.ok_or_else(Vec::new) } else { Err(reader.read.errors) }
+    let (group, notes) = reader::group((file, text), &mut Search::default());
+    group.filter(|_| notes.errors.is_empty()).ok_or(notes.errors)
 }
-
-/// Members that the relay gives to a block.
-const GIVEN: [&str; 2] = ["id", "revision"];
-
-/// Members of a target.
-const TARGET: [&str; 8] =
-    ["name", "site", "path", "profile", "connection", "timeout_ms", "max_requests_per_s", "types"];
-
-/// Members of a group.
-const GROUP: [&str; 5] = ["name", "period_ms", "on", "order", "variables"];
-
-/// Members of a variable.
-const VARIABLE: [&str; 13] = [
-    "parent_address",
-    "name",
-    "address",
-    "type",
-    "scale",
-    "unit",
-    "digits",
-    "display",
-    "choices",
-    "writable",
-    "min",
-    "max",
-    "order",
-];
 
 #[derive(Debug, Default)]
 struct Reader {
@@ -115,32 +82,16 @@ struct Reader {
     groups: Vec<(String, String, String, ProjectGroup)>,
     /// Paths that were taken, in small letters.
     taken: BTreeMap<String, String>,
+    search: Search,
 }
 
 impl Reader {
     /// `cipdeck.json`; whether the rest can be read.
     fn head(&mut self, text: &str) -> bool {
-        let Some(document) = self.document(PROJECT_HEAD, text) else { return false };
-        let at = |member: Option<&Member>| {
-            document.position(member.map_or(document.root.at, |found| found.node.at))
-        };
-        let version = document.value.get("project");
-        match version.and_then(Value::as_u64).filter(|version| *version > 0) {
-            None => self.error(PROJECT_HEAD, Some(at(member(&document.root, "project"))), Kind::NoVersion),
-            Some(version) if version > PROJECT_VERSION => {
-                self.error(PROJECT_HEAD, Some(at(member(&document.root, "project"))), Kind::TooNew(version));
-            }
-            Some(version) => {
-                self.read.version = version;
-                let mut value = document.value.clone();
-                if let Some(members) = value.as_object_mut() {
-                    members.remove("project");
-                }
-                match document.read(&value, &document.root, serde_json::from_value::<ProjectHead>) {
-                    Ok(head) => self.read.project.head = head,
-                    Err((place, what)) => self.error(PROJECT_HEAD, Some(place), what),
-                }
-            }
+        let found = reader::head((PROJECT_HEAD, text), &mut self.search);
+        if let Some((version, head)) = self.noted(found) {
+            self.read.version = version;
+            self.read.project.head = head;
         }
         self.read.errors.is_empty()
     }
@@ -166,22 +117,29 @@ impl Reader {
         match steps[..] {
             ["blocks", file] if name(file).is_some() => {
                 self.take(path);
-                let (key, block) = (name(file).unwrap_or_default(), self.block(path, text));
-                self.keep_block(path, key, block);
+                let block = reader::block((path, text), &mut self.search, self.read.version == 0);
+                self.keep_block(path, name(file).unwrap_or_default(), block);
             }
             ["targets", file] if name(file).is_some() => {
                 self.take(path);
-                self.target(path, name(file).unwrap_or_default(), text);
+                let target = reader::target((path, text), &mut self.search);
+                if let Some(target) = self.noted(target) {
+                    self.read.project.targets.insert(name(file).unwrap_or_default(), target);
+                }
             }
             ["groups", target, file] if name(file).is_some() => {
                 self.take(path);
-                self.group(path, target, name(file).unwrap_or_default(), text);
+                let group = reader::group((path, text), &mut self.search);
+                if let Some(group) = self.noted(group) {
+                    let key = name(file).unwrap_or_default();
+                    self.groups.push(((*target).into(), key, path.into(), group));
+                }
             }
             // Version 0: blocks as the page copies them.
             [file] if self.read.version == 0 && name(file).is_some() => {
                 let key = name(file).unwrap_or_default();
                 self.take(&super::block_path(&key));
-                let block = self.block(path, text);
+                let block = reader::block((path, text), &mut self.search, true);
                 self.keep_block(path, key, block);
             }
             ["groups", file] if name(file).is_some() => {
@@ -209,75 +167,20 @@ impl Reader {
         }
     }
 
-    fn keep_block(&mut self, path: &str, key: String, block: Option<BlockConfig>) {
-        let Some(block) = block else { return };
+    fn keep_block(&mut self, path: &str, key: String, block: (Option<BlockConfig>, Notes<'_>)) {
+        let Some(block) = self.noted(block) else { return };
         if path != super::block_path(&key) {
             self.read.origins.insert(key.clone(), path.into());
         }
         self.read.project.blocks.insert(key, block);
     }
 
-    fn block(&mut self, path: &str, text: &str) -> Option<BlockConfig> {
-        let document = self.document(path, text)?;
-        let mut value = document.value.clone();
-        for given in GIVEN {
-            if value.as_object_mut().is_some_and(|members| members.remove(given).is_some())
-                && self.read.version > 0
-            {
-                let at = member(&document.root, given).map(|found| document.position(found.at));
-                self.warning(path, at, Kind::Given(given));
-            }
-        }
-        self.ok(path, document.read(&value, &document.root, serde_json::from_value::<BlockConfig>))
-    }
-
-    fn target(&mut self, path: &str, key: String, text: &str) {
-        let Some(document) = self.document(path, text) else { return };
-        self.unknown(path, &document, &document.root, &TARGET);
-        let target = document.read(&document.value, &document.root, serde_json::from_value::<ProjectTarget>);
-        if let Some(target) = self.ok(path, target) {
-            self.read.project.targets.insert(key, target);
-        }
-    }
-
-    fn group(&mut self, path: &str, target: &str, key: String, text: &str) {
-        let Some(document) = self.document(path, text) else { return };
-        self.unknown(path, &document, &document.root, &GROUP);
-        let mut value = document.value.clone();
-        // One after the other: what is wrong in one does not hide what is wrong in others.
-        let entries = value.as_object_mut().and_then(|members| match members.get("variables") {
-            Some(Value::Array(_)) => members.remove("variables"),
-            _ => None,
-        });
-        let Some(mut group) =
-            self.ok(path, document.read(&value, &document.root, serde_json::from_value::<ProjectGroup>))
-        else {
-            return;
-        };
-        let nodes = match member(&document.root, "variables").map(|found| &found.node.inside) {
-            Some(Inside::Items(items)) => items.as_slice(),
-            _ => &[],
-        };
-        let entries = entries.as_ref().and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        for (entry, node) in entries.iter().zip(nodes) {
-            self.unknown(path, &document, node, &VARIABLE);
-            let variable = document.read(entry, node, serde_json::from_value::<ProjectVariable>);
-            group.variables.extend(self.ok(path, variable));
-        }
-        if group.variables.len() == nodes.len() {
-            for (place, what) in parents(&group.variables).err().unwrap_or_default() {
-                let at = nodes.get(place).map(|node| document.position(node.at));
-                self.error(path, at, what);
-            }
-        }
-        self.groups.push((target.into(), key, path.into(), group));
-    }
-
     fn groups_find_their_targets(&mut self) {
+        let wrong: BTreeSet<String> = self.read.errors.iter().map(|error| error.file.clone()).collect();
         for (target, key, path, group) in core::mem::take(&mut self.groups) {
             if let Some(found) = self.read.project.targets.get_mut(&target) {
                 found.groups.insert(key, group);
-            } else if !self.read.errors.iter().any(|error| error.file == target_path(&target)) {
+            } else if !wrong.contains(&target_path(&target)) {
                 self.error(&path, None, Kind::NoTarget(target));
             }
         }
@@ -317,39 +220,11 @@ impl Reader {
         self.read.origins.get(key).cloned().unwrap_or_else(|| super::block_path(key))
     }
 
-    /// JSON, and an object.
-    fn document<'a>(&mut self, path: &str, text: &'a str) -> Option<Document<'a>> {
-        if text.len() > MAX_PROJECT_FILE {
-            self.error(path, None, Kind::FileTooLong);
-            return None;
-        }
-        let document = match Document::parse(text) {
-            Ok(document) => document,
-            Err(wrong) => {
-                for (place, what) in wrong {
-                    self.error(path, Some(place), what);
-                }
-                return None;
-            }
-        };
-        // Read into a structure, an array would do, too: its members without their names.
-        if !document.value.is_object() {
-            let place = document.position(document.root.at);
-            self.error(path, Some(place), Kind::Content("this has to be an object: { … }".into()));
-            return None;
-        }
-        Some(document)
-    }
-
-    fn unknown(&mut self, path: &str, document: &Document<'_>, node: &Node, known: &[&str]) {
-        let Inside::Members(members) = &node.inside else { return };
-        for member in members.iter().filter(|member| !known.contains(&member.name.as_str())) {
-            self.warning(path, Some(document.position(member.at)), Kind::Unknown(member.name.clone()));
-        }
-    }
-
-    fn ok<T>(&mut self, path: &str, result: Result<T, (Position, Kind)>) -> Option<T> {
-        result.map_err(|(place, what)| self.error(path, Some(place), what)).ok()
+    /// What a file says; what is wrong with it is kept.
+    fn noted<T>(&mut self, (found, notes): (Option<T>, Notes<'_>)) -> Option<T> {
+        self.read.errors.extend(notes.errors);
+        self.read.warnings.extend(notes.warnings);
+        found
     }
 
     fn error(&mut self, path: &str, position: Option<Position>, what: Kind) {
@@ -358,12 +233,5 @@ impl Reader {
 
     fn warning(&mut self, path: &str, position: Option<Position>, what: Kind) {
         self.read.warnings.push(ProjectError { file: path.into(), position, what });
-    }
-}
-
-fn member<'a>(node: &'a Node, name: &str) -> Option<&'a Member> {
-    match &node.inside {
-        Inside::Members(members) => members.iter().find(|member| member.name == name),
-        _ => None,
     }
 }

@@ -352,15 +352,63 @@ fn a_project_has_limits() {
     assert_eq!(read(&folder(&[("blocks/a.json", &long)])).errors[0].what, ProjectErrorKind::FileTooLong);
 }
 
+/// `"a0": 1, "a1": 1, …`
+fn members(count: usize) -> String {
+    let all: Vec<_> = (0..count).map(|number| format!("\"a{number}\": 1, ")).collect();
+    all.concat()
+}
+
+#[test]
+fn of_a_file_with_very_much_wrong_the_beginning_is_told_and_how_much_there_is() {
+    let twice = format!("{{{}\"name\": \"x\"}}", "\"a\": 1,\n".repeat(100_000));
+    let unknown = members(100_000);
+    let unknown = format!("{{{unknown}\"name\": \"NX\", \"path\": \"0,0\"}}");
+    let lines = "{\"name\": 5, \"address\": \"a\"},\n".repeat(20_000);
+    let lines =
+        format!("{{\"name\": \"l\", \"variables\": [{lines}{{\"name\": \"a\", \"address\": \"a\"}}]}}");
+    let found = read(&folder(&[
+        ("blocks/twice.json", &twice),
+        ("targets/unknown.json", &unknown),
+        ("groups/unknown/lines.json", &lines),
+    ]));
+    let (errors, warnings) = (messages(&found.errors), messages(&found.warnings));
+    assert_eq!((errors.len(), warnings.len()), (202, 101));
+    for (told, expected) in [
+        (&errors[0], "blocks/twice.json:2:1: the member `a` is there twice"),
+        (&errors[100], "blocks/twice.json:101:1: and 99899 more in this file"),
+        (&errors[101], "groups/unknown/lines.json:1:38: invalid type: integer `5`, expected a string"),
+        (&errors[201], "groups/unknown/lines.json:100:10: and 19900 more in this file"),
+        (
+            &warnings[0],
+            "targets/unknown.json:1:2: this version does not know the member `a0`: it is kept, and does nothing",
+        ),
+    ] {
+        assert_eq!(told, expected);
+    }
+    assert!(warnings[100].ends_with(": and 99900 more in this file"), "{}", warnings[100]);
+}
+
+#[test]
+fn the_search_for_one_wrong_member_among_very_many_ends() {
+    let many = members(100_000);
+    let text = BLOCK.replacen('{', &format!("{{ {many}"), 1).replace("14,", "\"14\",");
+    let errors = block("x.json", &text).unwrap_err();
+    assert!(messages(&errors)[0].ends_with("invalid type: string \"14\", expected i64"), "{errors:?}");
+}
+
 #[test]
 fn a_member_is_located_also_if_only_what_it_is_in_is_there() {
-    let at = |field| locate(BLOCK, field).map(|found| (found.line, found.column));
-    assert_eq!(at("AppCfg.Service"), Some((12, 16)));
-    assert_eq!(at("AppCfg.MemberId[1]"), Some((19, 7)));
-    assert_eq!(at("AppCfg.Nothing"), Some((11, 13)));
-    assert_eq!(at("Nothing"), Some((1, 1)));
-    assert_eq!(locate(GROUP, "variables[1].address").map(|found| found.line), Some(19));
-    assert_eq!(locate("{", "x"), None);
+    let places = Places::of(BLOCK).unwrap();
+    for (field, line, column) in [
+        ("AppCfg.Service", 12, 16),
+        ("AppCfg.MemberId[1]", 19, 7),
+        ("AppCfg.Nothing", 11, 13),
+        ("Nothing", 1, 1),
+    ] {
+        assert_eq!(places.locate(field), Position { line, column }, "{field}");
+    }
+    assert_eq!(Places::of(GROUP).unwrap().locate("variables[1].address").line, 19);
+    assert!(Places::of("{").is_none());
 }
 
 #[test]

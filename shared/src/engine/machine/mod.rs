@@ -267,6 +267,11 @@ impl Engine {
         self.blocks.get(&block).is_some_and(|entry| entry.block.phase().is_busy())
     }
 
+    /// Whether the IN of this block is TRUE, or a message of it under way.
+    pub fn is_on(&self, block: BlockId) -> bool {
+        self.blocks.get(&block).is_some_and(|entry| entry.block.input() || entry.block.phase().is_busy())
+    }
+
     /// Whether no connection is there or being made: everything has been closed.
     pub fn is_quiet(&self) -> bool {
         self.clients.values().all(|client| client.link_id().is_none())
