@@ -18,6 +18,7 @@ mod cli;
 mod control_expert;
 mod convert;
 mod dialect;
+mod document;
 mod header;
 mod hex;
 mod ink;

@@ -10,7 +10,7 @@ use super::super::remark::{Remark, RemarkKind};
 use super::super::text::{Call, Expression, Item, Place};
 use super::read::{key_of, variable};
 use super::variables::{Variables, Word, memory_words};
-use super::{form, table};
+use super::{address, form, table};
 use crate::config::{PlcAddress, SendReq, SendReqForm, write_words};
 use crate::plan::Severity;
 
@@ -104,7 +104,11 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
         if let Some(reference) = variable(Some(value)) {
             self.uses(reference.root);
         }
-        self.variables.address(value)
+        let (address, words) = address::readable(self.variables.address(value)?);
+        if let Some(words) = words {
+            self.say(Severity::Warning, RemarkKind::Told(words));
+        }
+        Some(address)
     }
 
     /// The words that are sent, as far as the length counts and they are known.
@@ -229,6 +233,10 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
             .find_map(|(position, names)| variable(self.value(position, names)))
             .map_or("", |reference| reference.root);
         let lower = root.to_lowercase();
+        let is_whole = SEND.iter().chain(&MANAGEMENT).any(|pin| pin.eq_ignore_ascii_case(root));
+        if is_whole {
+            return root.to_string();
+        }
         let ending = ENDINGS.iter().find(|ending| lower.ends_with(&ending.to_lowercase()));
         let name = root.get(..root.len() - ending.map_or(0, |ending| ending.len())).unwrap_or(root);
         let name = if name.is_empty() { root } else { name };
@@ -237,6 +245,16 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
 
     fn uses(&mut self, root: &str) {
         self.used.insert(key_of(root));
+        if let Some(alias) = self.variables.located.alias(root) {
+            let words = self.variables.declaration(&alias).or_else(|| self.variables.declaration(root));
+            let count = words.map_or(1, |it| usize::try_from(it.kind.elements()).unwrap_or(0).min(1_024));
+            for name in [&alias, root] {
+                if let Some((first, _)) = memory_words(name) {
+                    self.used.extend((0..count).map(|index| format!("%mw{}", first.saturating_add(index))));
+                }
+            }
+            self.used.insert(alias);
+        }
         if let Some((first, count)) = memory_words(root) {
             self.used
                 .extend((0..count.unwrap_or(4)).map(|index| format!("%mw{}", first.saturating_add(index))));

@@ -19,6 +19,9 @@ const PROGRAM: [&str; 10] = ["JMP", "JMPC", "JMPCN", "RET", "RETC", "RETCN", "S"
 /// Functions of one argument that make an address.
 const ADDRESS: [&str; 3] = ["ADDR", "ADDM", "ADDMX"];
 
+/// Lines that an operand may go on for.
+const MAX_OPERAND_LINES: usize = 50;
+
 /// The text without its comments; lines and columns stay.
 pub(super) fn uncommented(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
@@ -36,8 +39,47 @@ pub(super) fn uncommented(text: &str) -> String {
 pub(super) fn as_st(text: &str) -> (String, Vec<Remark>) {
     let mut translator = Translator { accumulator: None, remarks: Vec::new() };
     let lines: Vec<String> =
-        text.lines().enumerate().map(|(index, line)| translator.line(index + 1, line)).collect();
+        whole(text).enumerate().map(|(index, line)| translator.line(index + 1, &line)).collect();
     (lines.join("\n"), translator.remarks)
+}
+
+/// The lines of a text. An operator whose parentheses are closed on a later line, as in `ADDMX (` `IN := x` `)`, is on
+/// its first line as a whole; the others are empty.
+fn whole(text: &str) -> impl Iterator<Item = String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut swallowed = 0;
+    (0..lines.len()).map(move |index| {
+        let line = lines.get(index).copied().unwrap_or_default();
+        if swallowed > 0 {
+            swallowed -= 1;
+            return String::new();
+        }
+        if !is_operator(line) || open_after(line, 0) == 0 {
+            return line.to_string();
+        }
+        let mut open = open_after(line, 0);
+        for (more, next) in lines.iter().skip(index + 1).take(MAX_OPERAND_LINES).enumerate() {
+            open = open_after(next, open);
+            if open == 0 {
+                swallowed = more + 1;
+                return lines.get(index..=index + swallowed).unwrap_or_default().join(" ");
+            }
+        }
+        line.to_string()
+    })
+}
+
+/// Parentheses that are open behind a line.
+fn open_after(line: &str, open: usize) -> usize {
+    let mut in_text = false;
+    line.chars().fold(open, |open, c| {
+        in_text ^= c == '\'';
+        match c {
+            '(' if !in_text => open + 1,
+            ')' if !in_text => open.saturating_sub(1),
+            _ => open,
+        }
+    })
 }
 
 struct Translator {
@@ -127,7 +169,7 @@ mod tests {
     #[test]
     fn what_is_loaded_is_assigned_where_it_is_stored() {
         let il = "LD '0.2.0.10.0.0.1'\nADDR\nST Adr\nLD 16#000A\nST G[3]\nL1:\n LD a\nANDN b\nJMPC L1\nLD Adr\n\
-                  SEND_REQ 14, S, G, R\nADDMX (IN := x)\nST y\nCAL t(IN := a)";
+                  SEND_REQ 14, S, G, R\nADDMX (IN := x)\nST y\nCAL t(IN := a)\nADDMX (\nIN := 'a(b'\n)\nST z";
         let (st, remarks) = as_st(il);
         let lines: Vec<&str> = st.lines().filter(|line| !line.is_empty()).collect();
         assert_eq!(
@@ -138,6 +180,7 @@ mod tests {
                 "SEND_REQ(Adr, 14, S, G, R);",
                 "y := ADDMX(IN := x);",
                 "t(IN := a);",
+                "z := ADDMX( IN := 'a(b' );",
             ]
         );
         assert_eq!(st.lines().count(), il.lines().count());

@@ -10,13 +10,39 @@ use super::super::remark::{Remark, RemarkKind};
 use super::super::text::{Call, Expression, Item, Lexeme, Memory, Reference, Script, Statement, tokens};
 use super::super::{Found, Imported};
 use super::call::read_call;
+use super::located::Located;
 use super::variables::{Variables, memory_words};
-use super::{form, il, table};
+use super::{exchange, form, il, table};
 use crate::config::SendReqForm;
 use crate::plan::Severity;
 
-/// Blocks from sections and words.
+/// Blocks from sections and words, and from exchange files.
 pub(in super::super) fn import(text: &str, dialect: Dialect) -> Imported {
+    if !exchange::is_exchange(text) {
+        return sections(text, dialect);
+    }
+    match exchange::as_text(text) {
+        Ok(sections_of_file) => of_file(sections(&sections_of_file, dialect)),
+        Err(remark) => Imported { blocks: Vec::new(), remarks: alloc::vec![*remark] },
+    }
+}
+
+/// A file is a whole program: what of it is no message is counted.
+fn of_file(mut imported: Imported) -> Imported {
+    let before = imported.remarks.len();
+    imported.remarks.retain(|remark| remark.severity != Severity::Note);
+    let others = before - imported.remarks.len();
+    if imported.blocks.is_empty() {
+        let words = "no call of SEND_REQ or DATA_EXCH is in this file".to_string();
+        imported.remarks.push(Remark::error(1, 1, "", RemarkKind::Told(words)));
+    } else if others > 0 {
+        let words = format!("{others} other statements and conditions of this file are not read");
+        imported.remarks.push(Remark::note(1, 1, "", RemarkKind::Told(words)));
+    }
+    imported
+}
+
+fn sections(text: &str, dialect: Dialect) -> Imported {
     let plain = il::uncommented(text);
     let (blocks, remarks, rest) = table::take(&plain, dialect.kind().form());
     let mut imported = Imported { blocks, remarks };
@@ -25,18 +51,19 @@ pub(in super::super) fn import(text: &str, dialect: Dialect) -> Imported {
     let script = Script::read(&st);
     imported.remarks.extend(script.remarks.iter().cloned());
     let mut used = BTreeSet::new();
+    let located = Located::of(&script);
     let mut memory = Memory::new(&script);
     for (index, item) in script.items.iter().enumerate() {
         if let Statement::Call(call) = &item.statement
             && is_exchange(call)
         {
-            let variables = Variables { script: &script, memory: &memory };
+            let variables = Variables { script: &script, memory: &memory, located: &located };
             let found = read_call(&variables, call, item, &mut used);
             imported.blocks.push(found);
         }
         memory.step(index, item);
     }
-    let variables = Variables { script: &script, memory: &memory };
+    let variables = Variables { script: &script, memory: &memory, located: &located };
     alone(&variables, &mut used, &mut imported, dialect.kind().form());
     unused(&script, &used, &mut imported);
     slips(&st, &script, &mut imported);

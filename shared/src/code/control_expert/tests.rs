@@ -238,3 +238,116 @@ fn any_text_ends() {
     let many = "0000 030E 0120 0124 0730\n".repeat(2_000);
     assert_eq!(read(&many).blocks.len(), 2_000);
 }
+
+#[test]
+fn words_on_memory_words_have_two_names() {
+    let declared = "VAR Req AT %MW100 : ARRAY[1..5] OF INT := [16#030E, 16#0120]; Mgt AT %MW200 : ARRAY[0..3] OF INT; END_VAR\n";
+    for program in [
+        // By name set, by word sent.
+        "Req[3] := 16#0124; Req[4] := 16#0730; Mgt[2] := 50; Mgt[3] := 8;\nDATA_EXCH(ADDMX('0.0.3{10.0.0.6}UNC.CIP'), 1, %MW100:4, %MW200:4, %MW300:50);",
+        // By word set, by name sent.
+        "%MW102 := 16#0124; %MW103 := 16#0730; %MW202 := 50; %MW203 := 8;\nDATA_EXCH(ADDMX('0.0.3{10.0.0.6}UNC.CIP'), 1, Req, Mgt, %MW300:50);",
+        // The last assignment counts, under whichever name.
+        "Req[1] := 7; %MW100 := 16#030E; %MW102 := 16#0124; Req[4] := 16#0730; Mgt[2] := 50; Mgt[3] := 8;\nDATA_EXCH(ADDMX('0.0.3{10.0.0.6}UNC.CIP'), 1, Req, Mgt, %MW300:50);",
+    ] {
+        let read = import(&alloc::format!("{declared}{program}"), Dialect::DataExch);
+        let [found] = read.blocks.as_slice() else { panic!("{program}: {:?}", read.remarks) };
+        let config = found.config.as_send_req().unwrap();
+        assert!(config.data_to_send.starts_with("030E 0120 0124 0730"), "{program}: {}", config.data_to_send);
+        assert_eq!(config.management_param, [0, 0, 50, 8], "{program}");
+        assert!(
+            !read.remarks.iter().any(|it| it.to_string().contains("changes nothing")),
+            "{:?}",
+            read.remarks
+        );
+    }
+}
+
+/// As exchange files have it; names and values are ours.
+fn exchange(sections: &str, variables: &str) -> String {
+    alloc::format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<STExchangeFile>\n<fileHeader company=\"Schneider Automation\"/>\n\
+         <program>\n<identProgram name=\"Read\" type=\"section\" task=\"MAST\"/>\n{sections}\n</program>\n\
+         <dataBlock>{variables}</dataBlock>\n</STExchangeFile>\n"
+    )
+}
+
+const WORDS: &str = "<variables name=\"Emis\" typeName=\"ARRAY[0..3] OF INT\"><instanceElementDesc name=\"[1]\"><value>16#0120</value>\
+    </instanceElementDesc><instanceElementDesc name=\"[2]\"><value>292</value></instanceElementDesc>\
+    <instanceElementDesc name=\"[3]\"><value>16#0730</value></instanceElementDesc></variables>\
+    <variables name=\"Gest\" typeName=\"ARRAY[0..3] OF INT\" topologicalAddress=\"%MW200\"/>\
+    <variables name=\"Recp\" typeName=\"ARRAY[0..99] OF INT\"/><variables name=\"Drive\" typeName=\"T_DRIVE\"/>";
+
+#[test]
+fn a_section_is_read_from_an_exchange_file() {
+    let st = "<STSource>IF Go &amp; NOT Gest[0].0 THEN (* &lt;read&gt; *)\n  Emis[0] := 16#030E; %MW202 := 50; Gest[3] := 8;\n  Lamp := 1;\n\
+              DATA_EXCH(ADR := ADDM('Ethernet_1{10.0.0.6}UNC.CIP'), TYP := 1, EMIS := Emis, GEST := Gest, RECP =&gt; Recp);\nEND_IF;</STSource>";
+    let read = crate::code::import(&exchange(st, WORDS), None);
+    let [found] = read.blocks.as_slice() else { panic!("{:?}", read.remarks) };
+    let config = found.config.as_send_req().unwrap();
+    assert_eq!((config.data_to_send.as_str(), config.received_data_size), ("030E 0120 0124 0730", 100));
+    assert_eq!(config.management_param, [0, 0, 50, 8]);
+    assert_eq!(
+        (config.address.as_str(), found.dialect),
+        ("ADDM('0.0.0{10.0.0.6}UNC.CIP')", Dialect::DataExch)
+    );
+    assert!(found.lines.contains(&9), "{:?}", found.lines);
+    let said: Vec<String> = read.remarks.iter().chain(&found.remarks).map(ToString::to_string).collect();
+    assert!(said[0].contains("other statements and conditions of this file are not read"), "{said:?}");
+    assert!(
+        said.iter().any(|it| it.starts_with("9:") && it.contains("where Ethernet_1 is connected")),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn a_drawn_block_is_a_call() {
+    let pin = |name: &str, value: &str| {
+        alloc::format!("<inputVariable formalParameter=\"{name}\" effectiveParameter=\"{value}\"/>")
+    };
+    let block = |name: &str, kind: &str, pins: &str| {
+        alloc::format!(
+            "<FFBBlock instanceName=\"{name}\" typeName=\"{kind}\"><descriptionFFB>{pins}</descriptionFFB></FFBBlock>"
+        )
+    };
+    let drawn = [
+        block(".1", "MOVE", &(pin("IN", "16#030E") + "<outputVariable formalParameter=\"OUT\" effectiveParameter=\"Emis[0]\"/>")),
+        block(".2", "ADDMX", &(pin("IN", "'0.0.3{10.0.0.6}UNC.CIP'") + "<outputVariable formalParameter=\"OUT\"/>")),
+        block(
+            ".3",
+            "DATA_EXCH",
+            &[
+                "<inputVariable formalParameter=\"EN\" effectiveParameter=\"Go\"/><inputVariable formalParameter=\"ADR\"/>",
+                &pin("TYP", "1"),
+                &pin("EMIS", "Emis"),
+                &pin("GEST", "Gest"),
+                "<outputVariable formalParameter=\"GEST\" effectiveParameter=\"Gest\"/>",
+                "<outputVariable formalParameter=\"RECP\" effectiveParameter=\"Recp\"/>",
+            ]
+            .concat(),
+        ),
+        "<linkFB><linkSource parentObjectName=\".2\" pinName=\"OUT\"/><linkDestination parentObjectName=\".3\" pinName=\"ADR\"/></linkFB>"
+            .into(),
+    ]
+    .concat();
+    let read = crate::code::import(
+        &exchange(&alloc::format!("<FBDSource><networkFBD>{drawn}</networkFBD></FBDSource>"), WORDS),
+        None,
+    );
+    let [found] = read.blocks.as_slice() else { panic!("{:?}", read.remarks) };
+    let config = found.config.as_send_req().unwrap();
+    assert_eq!(
+        (config.data_to_send.as_str(), config.address.as_str()),
+        ("030E 0120 0124 0730", "ADDMX('0.0.3{10.0.0.6}UNC.CIP')")
+    );
+    assert!(found.remarks.iter().any(|it| it.to_string().contains("Management_Param[2] is not set")));
+}
+
+#[test]
+fn a_file_without_an_exchange_is_told() {
+    let read = crate::code::import(&exchange("<STSource>a := 5;</STSource>", ""), None);
+    assert_eq!(read.blocks, []);
+    assert!(read.remarks[0].to_string().contains("no call of SEND_REQ or DATA_EXCH"), "{:?}", read.remarks);
+    let broken = crate::code::import("<STExchangeFile>\n<program></STExchangeFile>", None);
+    assert!(broken.remarks[0].to_string().contains("not XML"), "{:?}", broken.remarks);
+}

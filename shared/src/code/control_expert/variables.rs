@@ -1,11 +1,11 @@
 //! Tables of words among the variables of a section.
 
-use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::super::text::{Declaration, Expression, Memory, Reference, Script, Statement, Step};
+use super::located::Located;
 
 /// Words of a table that is looked for by its elements; no exchange has more.
 const MAX_WORDS: usize = 1_024;
@@ -32,6 +32,7 @@ pub(super) enum Word {
 pub(super) struct Variables<'v, 's, 'a> {
     pub(super) script: &'s Script<'a>,
     pub(super) memory: &'v Memory<'s, 'a>,
+    pub(super) located: &'v Located,
 }
 
 impl<'s, 'a> Variables<'_, 's, 'a> {
@@ -67,37 +68,36 @@ impl<'s, 'a> Variables<'_, 's, 'a> {
             [Step::Index(indexes)] => indexes.first().and_then(Expression::integer),
             _ => None,
         };
-        let elements: BTreeMap<i128, Option<Word>> = self
-            .memory
-            .below(&key)
-            .into_keys()
-            .filter_map(|path| path.strip_prefix('[')?.strip_suffix(']')?.parse().ok())
-            .map(|index: i128| (index, self.word(&format!("{key}[{index}]"))))
-            .collect();
+        let below = self.memory.below(&key).into_keys();
+        let index = |path: &str| path.strip_prefix('[')?.strip_suffix(']')?.parse().ok();
+        let last: Option<i128> = below.filter_map(index).max();
         // Without a declaration the printed tables begin at 0.
         let low = from.or(bounds.map(|(low, _)| low)).unwrap_or(0);
         let high = bounds.map(|(_, high)| high);
-        let last = elements.keys().next_back().copied();
-        let size = high.map(|high| usize::try_from(high.saturating_sub(low).saturating_add(1)).unwrap_or(0));
-        let count =
-            usize::try_from(high.or(last).map_or(0, |last| last.saturating_sub(low).saturating_add(1)))
-                .unwrap_or(0);
+        let count_to = |high: i128| usize::try_from(high.saturating_sub(low).saturating_add(1)).unwrap_or(0);
+        let size = high.map(count_to);
+        let count = high.or(last).map_or(0, count_to);
         let words = (0..count.min(MAX_WORDS))
-            .map(|index| {
-                elements.get(&low.saturating_add(i128::try_from(index).unwrap_or(0))).cloned().flatten()
-            })
+            .map(|at| self.word(&format!("{key}[{}]", low.saturating_add(i128::try_from(at).unwrap_or(0)))))
             .collect();
         Table { words, size }
     }
 
     /// What one word holds; `None`: nobody sets it.
     pub(super) fn word(&self, key: &str) -> Option<Word> {
-        let value = self.memory.value(key)?;
-        let number = value.integer_in(self.memory);
+        let number = self.value(key)?.integer_in(self.memory);
         let word = number.and_then(|number| {
             u16::try_from(number).or_else(|_| i16::try_from(number).map(i16::cast_unsigned)).ok()
         });
         Some(word.map_or(Word::Made, Word::Known))
+    }
+
+    /// What is known of a word under either of its names: what was assigned to it last.
+    fn value(&self, key: &str) -> Option<&'s Expression<'a>> {
+        let here = self.memory.cell(key);
+        let there = self.located.other(key).and_then(|other| self.memory.cell(&other));
+        let last = here.into_iter().chain(there).max_by_key(|cell| (cell.assigned, cell.item));
+        last.map(|cell| cell.value)
     }
 
     /// The element of a table, such as `Management_Param[2]`.

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use roxmltree::{Document, Node};
 
+use super::super::document::Lines;
 use super::super::remark::{Remark, RemarkKind};
 use super::logic::{self, Rung};
 
@@ -26,16 +27,13 @@ pub(super) struct Project<'a, 'i> {
     pub(super) document: &'a Document<'i>,
     pub(super) rungs: Vec<Rung>,
     text: &'a str,
-    /// Where its lines begin.
-    lines: Vec<usize>,
+    lines: Lines<'a>,
     tags: BTreeMap<(Scope, String), Node<'a, 'i>>,
     modules: BTreeMap<String, Node<'a, 'i>>,
 }
 
 impl<'a, 'i> Project<'a, 'i> {
     pub(super) fn new(document: &'a Document<'i>, text: &'a str) -> Self {
-        let lines = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
-        let lines = core::iter::once(0).chain(lines).collect();
         let (mut tags, mut modules) = (BTreeMap::new(), BTreeMap::new());
         for node in document.descendants() {
             let Some(name) = node.attribute("Name").map(str::to_lowercase) else { continue };
@@ -45,7 +43,7 @@ impl<'a, 'i> Project<'a, 'i> {
                 modules.entry(name).or_insert(node);
             }
         }
-        Self { rungs: logic::rungs(document), document, text, lines, tags, modules }
+        Self { rungs: logic::rungs(document), document, text, lines: Lines::new(text), tags, modules }
     }
 
     pub(super) fn tags(&self) -> impl Iterator<Item = Node<'a, 'i>> + use<'a, 'i> {
@@ -85,10 +83,7 @@ impl<'a, 'i> Project<'a, 'i> {
 
     /// Line and column of a byte, both from 1.
     pub(super) fn place(&self, at: usize) -> (usize, usize) {
-        let line = self.lines.partition_point(|start| *start <= at);
-        let start = line.checked_sub(1).and_then(|line| self.lines.get(line)).copied().unwrap_or(0);
-        let column = self.text.get(start..at).unwrap_or_default().chars().count();
-        (line, column + 1)
+        self.lines.place(at)
     }
 }
 

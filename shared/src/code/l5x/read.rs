@@ -2,12 +2,13 @@
 
 use alloc::collections::BTreeSet;
 use alloc::format;
-use alloc::string::{String, ToString};
+use alloc::string::String;
 use alloc::vec::Vec;
 
-use roxmltree::{Document, Error, Node, ParsingOptions};
+use roxmltree::Node;
 
 use super::super::dialect::Dialect;
+use super::super::document;
 use super::super::remark::{Remark, RemarkKind};
 use super::super::{Found, Imported};
 use super::logic::Rung;
@@ -15,21 +16,13 @@ use super::parameters::Parameters;
 use super::project::Project;
 use crate::plan::Severity;
 
-/// Nodes of a document.
-const MAX_NODES: u32 = 100_000;
-
 /// Blocks from an L5X document.
 pub(in super::super) fn import(text: &str) -> Imported {
     let mut imported = Imported::default();
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, entity_resolver: None };
-    let document = match Document::parse_with_options(text, options) {
-        Ok(document) => document,
-        Err(error) => {
-            imported.remarks.push(not_xml(text, &error));
-            return imported;
-        }
-    };
-    messages(&Project::new(&document, text), &mut imported);
+    match document::parse(text) {
+        Ok(document) => messages(&Project::new(&document, text), &mut imported),
+        Err(remark) => imported.remarks.push(*remark),
+    }
     imported
 }
 
@@ -120,25 +113,4 @@ fn starting(rungs: &[Rung]) -> (BTreeSet<String>, usize) {
 
 fn is_message(tag: Node<'_, '_>) -> bool {
     tag.attribute("DataType") == Some("MESSAGE")
-}
-
-/// Where the document ends to be XML, or to be of a bearable size.
-fn not_xml(text: &str, error: &Error) -> Remark {
-    let place = [error.pos().row, error.pos().col].map(|it| usize::try_from(it).unwrap_or(usize::MAX));
-    let [line, column] = match error {
-        // This error has no place of its own.
-        Error::DtdDetected => [1 + text.lines().take_while(|line| !line.contains("<!DOCTYPE")).count(), 1],
-        _ => place,
-    };
-    let excerpt = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-    let words = match error {
-        Error::NodesLimitReached => {
-            format!("a document has at most {MAX_NODES} nodes; nothing of it was read")
-        }
-        Error::DtdDetected => {
-            "a document type definition (DTD) is not read, nor anything behind it".to_string()
-        }
-        error => format!("this is not XML: {error}"),
-    };
-    Remark::error(line, column, excerpt, RemarkKind::Told(words))
 }

@@ -16,6 +16,7 @@ use core::ops::Range;
 
 use self::line::{Look, look};
 use self::span::Open;
+use super::control_expert;
 use super::dialect::Dialect;
 
 /// How a piece is read.
@@ -49,6 +50,9 @@ pub(super) fn pieces(text: &str, dialect: Option<Dialect>) -> Vec<Piece<'_>> {
         let piece = |form| Piece { form, first_line: part.first_line, text: Cow::Borrowed(source) };
         match part.look {
             Look::Nothing | Look::Remark => {}
+            Look::Xml if control_expert::is_exchange(source) => {
+                pieces.push(piece(Form::Code(Dialect::SendReqEtc100)));
+            }
             Look::Xml => pieces.push(piece(Form::Code(Dialect::L5x))),
             Look::Json => pieces.push(piece(Form::Code(Dialect::Json))),
             Look::Python => pieces.push(piece(Form::Code(Dialect::Pycomm3))),
