@@ -4,7 +4,7 @@ use cipdeck_shared::{
     config::{BlockId, Target},
     engine::{BlockView, CommandError, ConnectError, Engine, Event, Exchange, Instant, LinkId, Millis},
     plan::MessagePlan,
-    sim::{Device, SimConfig, SimConnection},
+    sim::{Device, Registers, SimConfig, SimConnection},
 };
 
 use crate::store::Shelf;
@@ -32,7 +32,8 @@ pub struct Bench {
 impl Bench {
     /// A device that has just been switched on. It takes a moment to answer, as a device does.
     pub fn new(clock: fn() -> Instant) -> Self {
-        let config = SimConfig { delay: Millis(3), ..SimConfig::default() };
+        let config =
+            SimConfig { delay: Millis(3), registers: Some(Registers::default()), ..SimConfig::default() };
         Self {
             engine: Engine::new(),
             device: Device::new(config),
@@ -203,6 +204,18 @@ mod tests {
         assert!(refused.status.error && !refused.q, "{refused:?}");
         let (written, _) = run(&config, true);
         assert!(written.q, "{written:?}");
+    }
+
+    #[test]
+    fn the_demo_device_has_holding_registers() {
+        let mut config = MsgCipGeneric::product_name("0,0");
+        config.app_cfg.service = 0x4E;
+        (config.app_cfg.class, config.app_cfg.instance, config.app_cfg.attribute) = (0x44, 1, 0);
+        config.req_data = "05000200".to_owned();
+        let (view, exchange) = run(&config, false);
+        assert!(view.q, "{view:?}");
+        assert_eq!(exchange.request[..], [0x4E, 2, 0x20, 0x44, 0x24, 1, 5, 0, 2, 0]);
+        assert_eq!(view.res_data[..], [5, 0, 6, 0], "registers 5 and 6 hold their own numbers");
     }
 
     #[test]
