@@ -13,6 +13,7 @@
 //! | [`office`] | the second document: users, lists, audit, history |
 //! | [`devices`] | the third document: devices, groups, variables, their live values |
 //! | [`words`] | the fourth: blocks in Control Expert's terms, SEND_REQ and DATA_EXCH |
+//! | [`invisible`] | characters that nobody sees, in texts that are pasted |
 //! | [`code`] | the fifth and the sixth: code of controllers becomes blocks, projects; a block becomes code |
 
 pub mod access;
@@ -26,6 +27,7 @@ pub mod editor;
 pub mod frame_stats;
 pub mod hooks;
 mod i18n;
+pub mod invisible;
 pub mod kit;
 pub mod net;
 pub mod notice;

@@ -103,11 +103,16 @@ fn data_as(subject: &Subject, edit: &Callback<Edit>) -> Html {
 fn data(subject: &Subject, edit: &Callback<Edit>) -> Html {
     let draft = &subject.draft;
     let shown = draft.shown_data_as();
-    let count = shown.read(&draft.part(Part::Data)).ok().map(|data| data.len());
-    let readout = match (count, shown == draft.data_as) {
-        (Some(count), false) => tr!("data.not_of_type", count = count, type_name = draft.data_as.word()),
-        (Some(count), true) => tr!("field.byte_count", count = count),
-        (None, _) => AttrValue::default(),
+    let readout = match shown.read(&draft.part(Part::Data)) {
+        Ok(data) if shown != draft.data_as => {
+            tr!("data.not_of_type", count = data.len(), type_name = draft.data_as.word())
+        }
+        Ok(data) if shown == DataAs::Bytes => tr!("field.byte_count", count = data.len()),
+        // How many there are says whether a comma has separated two.
+        Ok(data) => {
+            tr!("data.numbers", numbers = shown.count(&data), type_name = shown.word(), count = data.len())
+        }
+        Err(_) => AttrValue::default(),
     };
     let example = if shown == DataAs::Bytes { "00 00 0A 00" } else { "0 10" };
     text(subject, edit, Part::Data, Some(readout), example)

@@ -116,30 +116,59 @@ impl DataAs {
             return read_bytes(text);
         }
         let mut data = Vec::new();
-        for piece in text.split([' ', ',', ';', '\t', '\r', '\n']).filter(|piece| !piece.is_empty()) {
-            let raw = self.read_one(piece).ok_or_else(|| {
-                let (low, high) = self.limits();
-                if self == Self::Real {
-                    format!("“{piece}” is no REAL; write 12.5 or 1e3")
-                } else {
-                    format!("“{piece}” is no {}: {low} to {high}, or 16#0A", self.word())
-                }
-            })?;
+        for piece in self.pieces(text) {
+            let raw = self.read_one(piece).ok_or_else(|| self.why_not(piece))?;
             data.extend(raw.to_le_bytes().into_iter().take(self.size()));
         }
         Ok(data)
     }
 
+    /// How many numbers some data is; for bytes, how many bytes.
+    pub const fn count(self, data: &[u8]) -> usize {
+        data.len() / self.size()
+    }
+
+    /// The numbers of a text. A comma in a REAL may be meant as its decimal point: it separates only beside a space.
+    fn pieces(self, text: &str) -> impl Iterator<Item = &str> {
+        let separators: &[char] = if self == Self::Real {
+            &[' ', ';', '\t', '\r', '\n']
+        } else {
+            &[' ', ',', ';', '\t', '\r', '\n']
+        };
+        let pieces =
+            text.split(separators).map(move |it| if self == Self::Real { it.trim_matches(',') } else { it });
+        pieces.filter(|piece| !piece.is_empty())
+    }
+
+    fn why_not(self, piece: &str) -> String {
+        let (low, high) = self.limits();
+        match self {
+            Self::Real if piece.contains(',') => {
+                format!("“{piece}”: decimals have a point, 12.5; write a space between two numbers")
+            }
+            Self::Real => format!("“{piece}” is no REAL; write 12.5 or 1e3"),
+            _ => format!("“{piece}” is no {}: {low} to {high}, or 16#0A", self.word()),
+        }
+    }
+
     fn read_one(self, piece: &str) -> Option<u32> {
         if self == Self::Real {
             let value: f32 = piece.parse().ok()?;
-            return value.is_finite().then(|| value.to_bits());
+            // A number so small that nothing is left of it is none that somebody means.
+            let is_lost = value == 0.0 && !is_zero(piece);
+            return (value.is_finite() && !is_lost).then(|| value.to_bits());
         }
         let (low, high) = self.limits();
         let value = read_number(piece).ok().filter(|value| (low..=high).contains(value))?;
         // In range: the low 32 bits are the number's two's complement.
         u32::try_from(value & 0xFFFF_FFFF).ok()
     }
+}
+
+/// `0e5` is 0, `1e-60` is not.
+fn is_zero(number: &str) -> bool {
+    let digits = number.split(['e', 'E']).next().unwrap_or_default();
+    !digits.contains(|c| matches!(c, '1'..='9'))
 }
 
 /// Bytes of hexadecimal text, or why it is none.
@@ -198,7 +227,13 @@ mod tests {
         ] {
             assert!(data_as.read(text).unwrap_err().contains(piece));
         }
-        assert_eq!(DataAs::Real.read("12,5").unwrap().len(), 8, "a comma separates numbers");
+        assert!(
+            DataAs::Real.read("12,5").unwrap_err().contains("decimals have a point"),
+            "12.5, or 12 and 5?"
+        );
+        assert_eq!(DataAs::Real.read("12.5, 3; 0e5").unwrap().len(), 12, "a comma beside a space separates");
+        assert!(DataAs::Real.read("1e-60").is_err(), "it would be sent as 0");
+        assert_eq!(DataAs::Uint.read("12,5").map(|data| DataAs::Uint.count(&data)), Ok(2));
         assert!(DataAs::Bytes.read("0").is_err(), "half a byte");
     }
 

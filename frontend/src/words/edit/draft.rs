@@ -5,9 +5,9 @@
 
 use cipdeck_shared::{
     api,
-    config::{BlockConfig, Channel, Profile, SendReq, read_number, read_words, write_words},
+    config::{Channel, Profile, SendReq, read_number, read_words, write_words},
     plan::{
-        Field, MessagePlan, Severity,
+        Field,
         words::{FieldsError, WordsFields, WordsPath},
     },
 };
@@ -17,7 +17,9 @@ use super::{
     number::{number, set_number},
     part::{self, Part},
 };
-use crate::{editor::Remark, store::Shelf};
+use crate::store::Shelf;
+
+mod check;
 
 /// A block that is being edited.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,27 +196,6 @@ impl Draft {
         matches!(self.fields(), Fields::Of(WordsFields { path: WordsPath::Other(_), .. }))
     }
 
-    /// A message, if the draft can be sent, and everything that is to be said about it.
-    pub fn check(&self) -> (Option<MessagePlan>, Vec<Remark>) {
-        let mut remarks = Vec::new();
-        for (field, text) in self.numbers.iter() {
-            remarks.extend(read_number(text).err().map(|error| Remark::unreadable(field, error)));
-        }
-        let typed: Vec<_> = remarks.iter().map(|remark| remark.field.clone()).collect();
-        remarks.extend(self.wrong_parts().into_iter().map(|(part, text)| wrong(part, text)));
-        let (plan, findings) = MessagePlan::check(&BlockConfig::SendReq(self.config.clone()));
-        let found = findings.iter().map(Remark::from_rule);
-        remarks.extend(found.filter(|remark| !typed.contains(&remark.field)));
-        for refused in &self.refused {
-            let remark = Remark::from_relay(refused);
-            if remarks.iter().all(|other| (&other.field, &other.rule) != (&remark.field, &remark.rule)) {
-                remarks.push(remark);
-            }
-        }
-        let sendable = remarks.iter().all(|remark| remark.severity != Severity::Error);
-        (plan.filter(|_| sendable), remarks)
-    }
-
     /// Whether storing it would change something, or cannot be tried yet.
     pub fn differs_from(&self, stored: &SendReq) -> bool {
         let unreadable = self.numbers.iter().any(|(_, text)| read_number(text).is_err());
@@ -293,16 +274,6 @@ fn lengths(words: &[u16]) -> Vec<i64> {
 
 fn odd_length(words: &[u16]) -> i64 {
     i64::try_from(2 * words.len()).unwrap_or(i64::MAX) - 1
-}
-
-fn wrong(part: Part, text: String) -> Remark {
-    Remark {
-        field: part.word().to_owned(),
-        severity: Severity::Error,
-        rule: "unreadable_field".to_owned(),
-        text,
-        error_ids: None,
-    }
 }
 
 fn text_member<'a>(config: &'a mut SendReq, field: &Field) -> Option<&'a mut String> {

@@ -179,7 +179,14 @@ fn read_path(text: &str) -> Result<Vec<u8>, String> {
 
 /// Four numbers, or what is wrong with them.
 pub fn read_ip(text: &str) -> Result<[u8; 4], String> {
-    let pieces: Vec<_> = text.trim().split('.').collect();
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("an address is missing, such as 192.168.1.102".to_owned());
+    }
+    if let Some((address, port)) = text.rsplit_once(':') {
+        return Err(format!("write the address alone, {address}, without the port {port}"));
+    }
+    let pieces: Vec<_> = text.split('.').collect();
     let bytes: Result<Vec<u8>, String> = pieces
         .iter()
         .map(|piece| {
@@ -187,6 +194,7 @@ pub fn read_ip(text: &str) -> Result<[u8; 4], String> {
             match piece.parse::<u8>() {
                 Ok(byte) if digits => Ok(byte),
                 _ if digits => Err(format!("“{piece}” is over 255")),
+                _ if piece.contains(',') => Err("dots separate the numbers, as in 192.168.1.102".to_owned()),
                 _ => Err(format!("“{piece}” is no number from 0 to 255, as in 192.168.1.102")),
             }
         })
@@ -209,7 +217,9 @@ mod tests {
             ("192.168.1.", "“” is no number"),
             ("192.168.1.x", "“x” is no number"),
             ("192.168.1.+2", "“+2” is no number"),
-            ("", "“” is no number"),
+            ("192,168,1,102", "dots separate"),
+            ("192.168.1.102:44820", "write the address alone, 192.168.1.102, without the port 44820"),
+            (" ", "an address is missing"),
         ] {
             assert!(read_ip(text).unwrap_err().contains(says), "{text}: {:?}", read_ip(text));
         }

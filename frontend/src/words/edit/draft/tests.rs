@@ -1,6 +1,7 @@
 use cipdeck_shared::config::SendReqForm;
 
 use super::*;
+use crate::editor::Remark;
 
 const PRODUCT_NAME: &str = "0000 030E 0120 0124 0730";
 
@@ -124,4 +125,22 @@ fn numbers_that_cannot_be_read_stay_with_their_finding() {
     assert_eq!(draft.number(&Field::ManagementParam(2)), "3s");
     assert!(errors(&draft).contains(&"Management_Param[2]".to_owned()));
     assert!(draft.differs_from(&draft.config));
+}
+
+#[test]
+fn what_nobody_sees_is_said_beside_what_is_wrong() {
+    let mut draft = typed(product_name(), Part::Service, "16#\u{AD}0E");
+    draft.edit(Edit::Text(Field::Address, "ADDR('0.2.0.192.\u{200B}168.1.102')".to_owned()));
+    draft.edit(Edit::Number(Field::ManagementParam(2), "3\u{202F}000".to_owned()));
+    let remarks = draft.check().1;
+    let said = |field: &str| {
+        remarks.iter().find(|it| it.field == field).map(|it| it.text.clone()).unwrap_or_default()
+    };
+    for (field, says) in [
+        ("Service", "Character 4 cannot be seen: soft hyphen, U+00AD"),
+        ("Address", "Character 17 cannot be seen: character without a width, U+200B"),
+        ("Management_Param[2]", "Character 2 cannot be seen: space that is none, U+202F"),
+    ] {
+        assert!(said(field).contains(says), "{field}: {}", said(field));
+    }
 }
