@@ -16,7 +16,7 @@ pub(super) fn changes(changes: &[Change]) -> Html {
     let (requests, lost) = (count(Grade::Request), count(Grade::Lost));
     html! { <>
         if requests > 0 {
-            <p class="code-loud" role="alert" data-test="request-changes">{ tr!("changes.request_alert", count = requests) }</p>
+            <p class="code-loud" role="alert" data-test="request-changes">{ if requests == 1 { tr!("changes.request_alert_one") } else { tr!("changes.request_alert", count = requests) } }</p>
         }
         if lost > 0 {
             <p class="warning-text" data-test="lost">{ tr!("changes.lost_alert", count = lost) }</p>

@@ -23,6 +23,23 @@ pub enum Encoding {
     Latin1,
 }
 
+impl Encoding {
+    /// Its stable name.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Utf8 => "utf-8",
+            Self::Utf16 => "utf-16",
+            Self::Latin1 => "latin-1",
+        }
+    }
+
+    /// The one with this name; UTF-8, of which nothing is said, for any other.
+    pub fn of_word(word: &str) -> Self {
+        let all = [Self::Utf16, Self::Latin1];
+        all.into_iter().find(|it| it.word() == word).unwrap_or(Self::Utf8)
+    }
+}
+
 /// Why a file is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoText {

@@ -1,7 +1,8 @@
 //! What a block sends, shortly.
 
 use cipdeck_shared::{
-    config::{space_hex, write_hex},
+    code::Kind,
+    config::{BlockId, space_hex, write_hex},
     plan::{Effect, MessagePlan},
     table,
 };
@@ -48,4 +49,12 @@ pub(super) fn marked(bytes: &[u8], others: &[u8]) -> Html {
         html! { <span key={at} class={classes!("byte", differs.then_some("differs"))}>{ format!("{byte:02X}") }</span> }
     };
     html! { <span class="code-bytes mono">{ for bytes.iter().enumerate().map(byte) }</span> }
+}
+
+/// Where a block is configured.
+pub(super) fn place(kind: Kind, id: BlockId) -> String {
+    match kind {
+        Kind::MsgCipGeneric => format!("/deck/{id}"),
+        _ => format!("/words/{id}"),
+    }
 }

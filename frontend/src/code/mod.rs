@@ -32,7 +32,7 @@ use yew::prelude::*;
 use self::{
     export::ExportPage,
     frame::{Frame, not_found},
-    import::{Desk, ImportPage},
+    import::{ImportPage, restored},
     project::ProjectPage,
     route::Page,
 };
@@ -40,7 +40,7 @@ use self::{
 /// The document that reads code.
 #[component]
 pub fn CodeIn() -> Html {
-    let desk = use_reducer(Desk::default);
+    let desk = use_reducer(restored);
     let show = move |page| match page {
         Page::Import => html! { <ImportPage desk={desk.clone()} /> },
         Page::Export(_) | Page::Project | Page::NotFound => not_found(),

@@ -6,15 +6,14 @@ use cipdeck_shared::{
     api::Role,
     code::{Change, Converted, Grade, Kind, convert},
     config::{Block, BlockConfig, BlockId},
-    plan::MessagePlan,
+    plan::{MessagePlan, limits::MAX_NAME},
 };
 use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
 use super::{
-    super::{api, changes::changes, i18n::tr},
+    super::{api, changes::changes, facts::place, i18n::tr},
     pair::{Differences, pair},
-    place,
 };
 use crate::{
     editor::Remark,
@@ -71,9 +70,7 @@ struct BecomingProps {
 fn Becoming(props: &BecomingProps) -> Html {
     use_session();
     let action = use_action();
-    let name = use_state(|| {
-        tr!("another.name_as", name = props.block.config.name(), kind = short(props.kind)).to_string()
-    });
+    let name = use_state(|| suggested(props.block.config.name(), props.kind));
     let seen = use_state(BTreeSet::<usize>::new);
     let made = use_state(|| None::<BlockId>);
     let converted = use_memo(props.clone(), |props| convert(&props.block.config, props.kind));
@@ -175,6 +172,14 @@ fn named(converted: &Converted, name: &str) -> BlockConfig {
     config
 }
 
+/// A name for the new block that is no longer than a name may be.
+fn suggested(name: &str, kind: Kind) -> String {
+    let named = |name: &str| tr!("another.name_as", name = name, kind = short(kind)).to_string();
+    let room = MAX_NAME.saturating_sub(named("").chars().count());
+    let name: String = name.chars().take(room).collect();
+    named(name.trim_end())
+}
+
 /// In a name.
 const fn short(kind: Kind) -> &'static str {
     match kind {
@@ -182,5 +187,20 @@ const fn short(kind: Kind) -> &'static str {
         Kind::SendReqEtc100 => "ETC100",
         Kind::SendReqEtc101 => "ETC101",
         Kind::DataExch => "DATA_EXCH",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suggested_name_is_not_too_long() {
+        assert_eq!(suggested("drive", Kind::DataExch), "drive as DATA_EXCH");
+        for kind in Kind::ALL {
+            let name = suggested(&"é".repeat(MAX_NAME), kind);
+            assert_eq!(name.chars().count(), MAX_NAME, "{name}");
+            assert!(name.ends_with(short(kind)));
+        }
     }
 }

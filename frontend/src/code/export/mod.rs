@@ -14,7 +14,7 @@ use cipdeck_shared::{
 use yew::prelude::*;
 
 use self::{another::Another, choice::choice, output::Output};
-use super::i18n::tr;
+use super::{facts::place, i18n::tr};
 use crate::{
     address::{self, use_path},
     hooks::use_title,
@@ -63,14 +63,6 @@ fn head(block: &Rc<Block>) -> Html {
             <span class="quiet mono">{ block.config.target_text().to_owned() }</span>
             <span class="page-do"><a class="button link" href={place(Kind::of(&block.config), block.id)}>{ tr!("take.open") }</a></span>
         </div>
-    }
-}
-
-/// Where a block is configured.
-pub(super) fn place(kind: Kind, id: BlockId) -> String {
-    match kind {
-        Kind::MsgCipGeneric => format!("/deck/{id}"),
-        _ => format!("/words/{id}"),
     }
 }
 

@@ -71,9 +71,11 @@ fn download(text: &str) -> String {
 
 /// `drive-name.L5X`: the block's name in letters that every file system takes.
 fn file_name(name: &str, dialect: Dialect) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' };
-    let name: String = name.trim().chars().take(MAX_NAME).map(safe).collect();
-    let name = if name.is_empty() { "block" } else { &name };
+    let is_safe = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+    let short: String = name.chars().take(MAX_NAME).collect();
+    // One underscore for all that lies between two parts.
+    let parts: Vec<_> = short.split(|c| !is_safe(c)).filter(|part| !part.is_empty()).collect();
+    let name = if parts.is_empty() { "block".to_owned() } else { parts.join("_") };
     format!("{name}.{}", dialect.file_ending())
 }
 
@@ -87,7 +89,8 @@ mod tests {
     #[test]
     fn a_file_is_named_after_its_block() {
         assert_eq!(file_name("drive-name", Dialect::L5x), "drive-name.L5X");
-        assert_eq!(file_name("../a b\u{202e}é", Dialect::Pycomm3), "___a_b__.py");
+        assert_eq!(file_name("../a b\u{202e}é", Dialect::Pycomm3), "a_b.py");
+        assert_eq!(file_name("write \"speed\" */ (* <b> & x", Dialect::CcwSt), "write_speed_b_x.st");
         assert_eq!(file_name(" ", Dialect::Hex), "block.txt");
         assert!(file_name(&"x".repeat(500), Dialect::Json).len() < 70);
     }

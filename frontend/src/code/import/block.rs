@@ -45,7 +45,7 @@ pub(super) fn BlockCard(props: &BlockCardProps) -> Html {
             { double(entry) }
             { findings(entry) }
             { for entry.found.remarks.iter().map(|remark| said(remark, &on_line)) }
-            { outcome(&entry.pick.outcome) }
+            { outcome(entry) }
         </li>
     }
 }
@@ -133,20 +133,21 @@ fn findings(entry: &Entry) -> Html {
     </> }
 }
 
-fn outcome(outcome: &Outcome) -> Html {
-    match outcome {
+fn outcome(entry: &Entry) -> Html {
+    match &entry.pick.outcome {
         Outcome::Open => html! {},
         Outcome::Saving => html! { <p class="hint" role="status">{ tr!("found.saving") }</p> },
         Outcome::Saved(id) => html! {
             <p class="code-saved" role="status" data-test="saved">
                 { tr!("found.saved", id = id) }{ " " }
-                <a href={format!("/deck/{id}")}>{ tr!("found.open") }</a>{ " " }
+                <a href={facts::place(Kind::of(&entry.config), *id)}>{ tr!("found.open") }</a>{ " " }
                 <a href={format!("/code/{id}")}>{ tr!("found.as_code") }</a>
             </p>
         },
         Outcome::Refused(problem) => html! {
             <div class="code-wrong" data-test="refused">
-                <p><b>{ tr!("found.refused") }</b></p>
+                // Without an answer nobody knows what became of it.
+                <p><b>{ if problem.status == 0 { tr!("found.unanswered") } else { tr!("found.refused") } }</b></p>
                 { problem_note(Some(problem)) }
                 { for problem.findings.iter().flatten().map(|finding| {
                     let remark = Remark::from_relay(finding);

@@ -86,6 +86,9 @@ pub enum Outcome {
     Refused(Rc<Problem>),
 }
 
+/// A text that was left: file, how that was written, text, chosen dialect, and what was decided.
+pub type Left = (Option<String>, Encoding, String, Option<Dialect>, Vec<Pick>);
+
 /// A block among all texts: the key of its text, and its number there.
 pub type Place = (u32, usize);
 
@@ -143,9 +146,27 @@ impl Source {
         self.file.is_none() && self.text.trim().is_empty()
     }
 
+    /// Decides about what is read next, if it is this text again.
+    fn left(key: u32, (file, encoding, text, dialect, picks): Left) -> Self {
+        Self { file, encoding, text: text.into(), dialect, picks, is_stale: true, ..Self::new(key) }
+    }
+
+    /// Another text, or the same in another dialect. What was decided before a reload was about what was there then.
+    fn changed(&mut self) {
+        self.is_stale = true;
+        if self.imported.is_none() {
+            self.picks.clear();
+        }
+    }
+
     /// Decisions stay with the block of the same name, or at the same place when its name has changed.
     fn put(&mut self, imported: Rc<Imported>) {
         let before = self.imported.take();
+        if before.is_none() && self.picks.len() == imported.blocks.len() {
+            self.imported = Some(imported);
+            self.is_stale = false;
+            return;
+        }
         let old: &[Found] = before.as_ref().map_or(&[], |imported| &imported.blocks);
         let mut picks: Vec<_> = self.picks.drain(..).map(Some).collect();
         let matching = |found: &Found, index: usize, picks: &[Option<Pick>]| {
@@ -192,6 +213,15 @@ impl Pick {
 }
 
 impl Desk {
+    /// The desk with texts that were left on it; `None` without any.
+    pub fn left(texts: impl Iterator<Item = Left>, shown: usize, target: String) -> Option<Self> {
+        let sources: Vec<_> =
+            (0..).zip(texts.take(MAX_SOURCES)).map(|(key, left)| Source::left(key, left)).collect();
+        let next = u32::try_from(sources.len()).ok()?;
+        let shown = if shown < sources.len() { shown } else { 0 };
+        (!sources.is_empty()).then(|| Self { sources, shown, target, refused: Vec::new(), next })
+    }
+
     /// The source that is shown.
     pub fn source(&self) -> Option<&Source> {
         self.sources.get(self.shown)
@@ -234,11 +264,13 @@ impl Desk {
             Deed::Type(key, text) => {
                 self.refused.clear();
                 let source = self.at(key)?;
-                (source.text, source.is_stale) = (text.into(), true);
+                source.text = text.into();
+                source.changed();
             }
             Deed::Choose(key, dialect) => {
                 let source = self.at(key)?;
-                (source.dialect, source.is_stale) = (dialect, true);
+                source.dialect = dialect;
+                source.changed();
             }
             Deed::Read(key, text, dialect, imported) => {
                 // What was typed in the meantime is read next.

@@ -16,12 +16,15 @@ use super::{
     desk::{Deed, Desk, MAX_SOURCES, Refusal, Source},
     editor::{CodeEditor, Mark, Wish},
     files,
+    kept::Keeping,
 };
+use crate::invisible::{self, Invisible};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct IntakeProps {
     pub(super) desk: UseReducerHandle<Desk>,
     pub(super) wish: Wish,
+    pub(super) keeping: Keeping,
     pub(super) on_deed: Callback<Deed>,
 }
 
@@ -33,6 +36,7 @@ pub(super) fn Intake(props: &IntakeProps) -> Html {
         Lines::of(text, &parts(&source))
     });
     let marks: Rc<[Mark]> = (*use_memo(source.imported.clone(), |_| marks(&source))).clone().into();
+    let unseen = *use_memo(source.text.clone(), |text| Invisible::first_of(text));
     let key = source.key;
     let on_text = props.on_deed.reform(move |text| Deed::Type(key, text));
     html! {
@@ -41,8 +45,40 @@ pub(super) fn Intake(props: &IntakeProps) -> Html {
             { tabs(&props.desk, &props.on_deed) }
             { for props.desk.refused.iter().map(|(name, why)| refused(name, *why)) }
             { encoding(source.encoding) }
+            if let Some(first) = unseen.filter(|_| marks.iter().any(|mark| mark.severity == Severity::Error)) {
+                { unseen_note(&source, first, &props.on_deed) }
+            }
             <CodeEditor key={key} text={source.text.clone()} {lines} {marks} wish={props.wish} {on_text} />
+            { kept_note(props.keeping) }
         </section>
+    }
+}
+
+/// Says what nobody sees where something is not understood, and offers to take it out.
+fn unseen_note(source: &Source, first: Invisible, on_deed: &Callback<Deed>) -> Html {
+    let (key, text) = (source.key, source.text.clone());
+    let onclick = on_deed.reform(move |_: MouseEvent| Deed::Type(key, invisible::without(&text)));
+    let count = invisible::count(&source.text);
+    html! {
+        <p class="warning-text" role="status" data-test="unseen">
+            if count == 1 {
+                { tr!("intake.unseen_one", line = first.line, name = first.name()) }
+            } else {
+                { tr!("intake.unseen", count = count, line = first.line, name = first.name()) }
+            }
+            { " " }
+            <button type="button" class="tool" {onclick} data-test="take-out">{ tr!("intake.take_out") }</button>
+        </p>
+    }
+}
+
+fn kept_note(keeping: Keeping) -> Html {
+    match keeping {
+        Keeping::Nothing => html! {},
+        Keeping::All => html! { <p class="hint" data-test="kept">{ tr!("intake.kept") }</p> },
+        Keeping::NotKept => {
+            html! { <p class="finding warning" role="status" data-test="not-kept">{ tr!("intake.not_kept") }</p> }
+        }
     }
 }
 

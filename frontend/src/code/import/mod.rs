@@ -9,6 +9,7 @@ pub mod entry;
 mod files;
 mod found;
 mod intake;
+mod kept;
 mod reading;
 mod remarks;
 mod save;
@@ -18,14 +19,15 @@ use std::{collections::BTreeSet, rc::Rc};
 use yew::prelude::*;
 
 pub use self::desk::Desk;
+pub(super) use self::kept::restored;
 use self::{
     can::can_be_read, desk::Deed, editor::Wish, entry::entries, found::Found, intake::Intake,
-    reading::use_reading,
+    kept::use_keeping, reading::use_reading,
 };
 use super::{api::Stored, i18n::tr};
 use crate::{hooks::use_title, office::fetch::use_fetched};
 
-/// The desk outlives the page: who looks at a project and comes back finds it as it was.
+/// The desk outlives the page, and the document: who looks at a project and comes back finds it as it was.
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct ImportPageProps {
     pub(super) desk: UseReducerHandle<Desk>,
@@ -37,6 +39,7 @@ pub(super) fn ImportPage(props: &ImportPageProps) -> Html {
     use_title(&tr!("intake.title"));
     let desk = props.desk.clone();
     use_reading(&desk);
+    let keeping = use_keeping(&desk);
     let in_deck = use_fetched::<Vec<Stored>>("blocks".to_owned());
     let names = use_memo(in_deck.data.clone(), |blocks| {
         let blocks = blocks.iter().flat_map(|blocks| blocks.iter());
@@ -66,7 +69,7 @@ pub(super) fn ImportPage(props: &ImportPageProps) -> Html {
             <div class="page-head"><h1>{ tr!("intake.title") }</h1></div>
             <p class="lead">{ tr!("intake.lead") }</p>
             <div class="code-in">
-                <Intake desk={desk.clone()} wish={*wish} on_deed={on_deed.clone()} />
+                <Intake desk={desk.clone()} wish={*wish} {keeping} on_deed={on_deed.clone()} />
                 if is_empty {
                     { can_be_read() }
                 } else {

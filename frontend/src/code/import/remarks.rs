@@ -9,6 +9,7 @@ use super::{
     super::{i18n::tr, say},
     desk::Desk,
 };
+use crate::invisible;
 
 /// Remarks that are drawn for all texts together.
 const MOST_SHOWN: usize = 200;
@@ -63,7 +64,7 @@ pub(super) fn said(remark: &Remark, on_line: &Callback<usize>) -> Html {
                 { tr!("remarks.at", line = line, column = remark.column) }
             </button>
             if !remark.excerpt.is_empty() {
-                <code>{ &remark.excerpt }</code>
+                <code>{ invisible::shown(&remark.excerpt) }</code>
             }
             <span>{ remark.what.to_string() }</span>
         </div>

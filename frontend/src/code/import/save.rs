@@ -70,11 +70,11 @@ pub(super) fn SaveBar(props: &SaveBarProps) -> Html {
                 <span class="hint">{ tr!("save.not_you") }</span>
             }
             if wrong > 0 {
-                <span class="finding error">{ tr!("save.has_errors", count = say::blocks(wrong)) }</span>
+                <span class="finding error">{ if wrong == 1 { tr!("save.has_error") } else { tr!("save.has_errors", count = wrong) } }</span>
             }
             <span role="status" data-test="save-done">
                 if let Some((saved, refused)) = *done {
-                    { tr!("save.done", saved = saved, refused = refused) }
+                    { if refused == 0 { tr!("save.done", saved = saved) } else { tr!("save.done_partly", saved = saved, refused = refused) } }
                 }
             </span>
         </div>
