@@ -53,15 +53,9 @@ pub fn without(text: &str) -> String {
 
 /// The text with each of them written out: `16#03‹U+00AD›0E`.
 pub fn shown(text: &str) -> String {
-    let mut shown = String::new();
-    for c in text.chars() {
-        if is_invisible(c) {
-            shown.push_str(&format!("‹U+{:04X}›", u32::from(c)));
-        } else {
-            shown.push(c);
-        }
-    }
-    shown
+    let written =
+        |c: char| if is_invisible(c) { format!("‹U+{:04X}›", u32::from(c)) } else { c.to_string() };
+    text.chars().map(written).collect()
 }
 
 /// Tabs and the ends of lines and of pages are where they belong.

@@ -105,6 +105,9 @@ async fn the_requests_of_schneiders_modules_become_blocks_and_give_the_same_word
             user.shot(&format!("code-{number}-{language}")).await;
         }
         user.go(&page(&relay, "")).await;
+        // The text lies there as it was left.
+        user.click_part("clear").await;
+        user.see("What can be read", PATIENCE).await;
     }
     user.close().await;
 }

@@ -1,14 +1,12 @@
 //! The desk over a reload, and while somebody is elsewhere: its texts and what was decided about them, in the browser's
 //! local storage.
 
-use cipdeck_shared::config::BlockId;
 use gloo_timers::callback::Timeout;
-use serde::{Deserialize, Serialize};
 use yew::prelude::*;
 
 use super::{
     super::decode::Encoding,
-    desk::{Desk, Outcome, Pick, Source},
+    desk::{Desk, Left, Outcome, Pick, Source},
 };
 use crate::browser;
 
@@ -23,29 +21,6 @@ const QUICK: usize = 64 * 1024;
 
 /// That moment, in ms.
 const PAUSE_MS: u32 = 400;
-
-#[derive(Serialize, Deserialize)]
-struct Kept {
-    shown: usize,
-    target: String,
-    sources: Vec<KeptSource>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct KeptSource {
-    file: Option<String>,
-    encoding: String,
-    text: String,
-    dialect: String,
-    picks: Vec<KeptPick>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct KeptPick {
-    kept: bool,
-    name: Option<String>,
-    saved: Option<BlockId>,
-}
 
 /// What of the desk is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,55 +79,89 @@ fn bytes(desk: &Desk) -> usize {
     desk.sources.iter().map(|source| source.text.len()).sum()
 }
 
+/// A line of fields for the desk, for each text, and for each decision about a block in it. Not JSON: what reads that would
+/// be 5 kB of the document.
 fn write(desk: &Desk) -> String {
-    let pick = |pick: &Pick| KeptPick {
-        kept: pick.kept,
-        name: pick.name.clone(),
-        saved: match pick.outcome {
-            Outcome::Saved(id) => Some(id),
-            _ => None,
-        },
-    };
-    let source = |source: &Source| KeptSource {
-        file: source.file.clone(),
-        encoding: source.encoding.word().to_owned(),
-        text: source.text.to_string(),
-        dialect: source.dialect.map_or("", |dialect| dialect.name()).to_owned(),
-        picks: source.picks.iter().map(pick).collect(),
-    };
-    let kept = Kept {
-        shown: desk.shown,
-        target: desk.target.clone(),
-        sources: desk.sources.iter().map(source).collect(),
-    };
-    serde_json::to_string(&kept).unwrap_or_default()
+    let mut lines = line(&[&desk.shown.to_string(), &desk.target]);
+    for source in &desk.sources {
+        let dialect = source.dialect.map_or("", |dialect| dialect.name());
+        lines += &line(&[TEXT, &some(source.file.as_deref()), source.encoding.word(), dialect, &source.text]);
+        for pick in &source.picks {
+            let saved = match pick.outcome {
+                Outcome::Saved(id) => id.to_string(),
+                _ => String::new(),
+            };
+            let kept = if pick.kept { KEPT } else { "" };
+            lines += &line(&[PICK, kept, &saved, &some(pick.name.as_deref())]);
+        }
+    }
+    lines
 }
 
-fn read(text: &str) -> Option<Desk> {
-    let kept: Kept = serde_json::from_str(text).ok()?;
-    let pick = |pick: KeptPick| Pick {
-        kept: pick.kept,
-        name: pick.name,
-        outcome: pick.saved.map_or(Outcome::Open, Outcome::Saved),
-    };
-    let source = |source: KeptSource| {
-        let encoding = Encoding::of_word(&source.encoding);
-        let picks = source.picks.into_iter().map(pick).collect();
-        (source.file, encoding, source.text, source.dialect.parse().ok(), picks)
-    };
-    Desk::left(kept.sources.into_iter().map(source), kept.shown, kept.target)
+/// What a line is about.
+const TEXT: &str = "text";
+const PICK: &str = "pick";
+
+/// In a pick that is to be saved.
+const KEPT: &str = "kept";
+
+fn read(lines: &str) -> Option<Desk> {
+    let mut lines = lines.lines().map(|line| line.split('\t').map(plain).collect::<Vec<_>>());
+    let head = lines.next()?;
+    let [shown, target] = &*head else { return None };
+    let mut texts: Vec<Left> = Vec::new();
+    for fields in lines {
+        match &*fields {
+            [mark, file, encoding, dialect, text] if mark == TEXT => {
+                let (encoding, dialect) = (Encoding::of_word(encoding), dialect.parse().ok());
+                texts.push((of_some(file), encoding, text.clone(), dialect, Vec::new()));
+            }
+            [mark, kept, saved, name] if mark == PICK => {
+                let outcome = saved.parse().map_or(Outcome::Open, Outcome::Saved);
+                let pick = Pick { kept: kept == KEPT, name: of_some(name), outcome };
+                texts.last_mut()?.4.push(pick);
+            }
+            _ => return None,
+        }
+    }
+    Desk::left(texts.into_iter(), shown.parse().ok()?, target.clone())
+}
+
+fn line(fields: &[&str]) -> String {
+    let escaped =
+        |field: &&str| ESCAPES.iter().fold((*field).to_owned(), |text, (c, code)| text.replace(c, code));
+    fields.iter().map(escaped).collect::<Vec<_>>().join("\t") + "\n"
+}
+
+fn plain(field: &str) -> String {
+    ESCAPES.iter().rev().fold(field.to_owned(), |text, (c, code)| text.replace(code, c))
+}
+
+/// What would end a field, or a line. The first one escapes the others.
+const ESCAPES: [(&str, &str); 4] = [("%", "%25"), ("\t", "%09"), ("\n", "%0A"), ("\r", "%0D")];
+
+/// A text that may be none is not the same as one without letters.
+fn some(text: Option<&str>) -> String {
+    text.map(|text| format!("={text}")).unwrap_or_default()
+}
+
+fn of_some(text: &str) -> Option<String> {
+    text.strip_prefix('=').map(str::to_owned)
 }
 
 #[cfg(test)]
 mod tests {
     use std::rc::Rc;
 
-    use cipdeck_shared::code::{Dialect, import};
+    use cipdeck_shared::{
+        code::{Dialect, import},
+        config::BlockId,
+    };
     use yew::Reducible;
 
     use super::{super::desk::Deed, *};
 
-    const TEXT: &str = "0E 03 20 01 24 01 30 07";
+    const REQUEST: &str = "0E 03 20 01 24 01 30 07";
 
     fn done(desk: Rc<Desk>, deeds: Vec<Deed>) -> Rc<Desk> {
         deeds.into_iter().fold(desk, Desk::reduce)
@@ -170,16 +179,16 @@ mod tests {
 
     #[test]
     fn a_desk_is_as_it_was_left() {
-        let text: Rc<str> = TEXT.into();
+        let text: Rc<str> = REQUEST.into();
         let desk = done(
             Rc::default(),
             vec![
-                Deed::Type(0, TEXT.to_owned()),
+                Deed::Type(0, REQUEST.to_owned()),
                 Deed::Choose(0, Some(Dialect::Hex)),
                 Deed::Read(0, text.clone(), Some(Dialect::Hex), Rc::new(import(&text, Some(Dialect::Hex)))),
                 Deed::Rename((0, 0), "mine".to_owned()),
                 Deed::Became((0, 0), Outcome::Saved(BlockId(7))),
-                Deed::Add("a.st".to_owned(), "(* d\u{e9}bit *)".to_owned(), Encoding::Latin1),
+                Deed::Add("a\t%0A.st".to_owned(), "(* d\u{e9}bit\n100 %25\t*)".to_owned(), Encoding::Latin1),
                 Deed::Target("192.168.1.7".to_owned()),
             ],
         );
@@ -198,8 +207,8 @@ mod tests {
         let desk = done(
             Rc::default(),
             vec![
-                Deed::Type(0, TEXT.to_owned()),
-                Deed::Read(0, TEXT.into(), None, Rc::new(import(TEXT, None))),
+                Deed::Type(0, REQUEST.to_owned()),
+                Deed::Read(0, REQUEST.into(), None, Rc::new(import(REQUEST, None))),
                 Deed::Became((0, 0), Outcome::Saved(BlockId(7))),
             ],
         );
@@ -218,10 +227,10 @@ mod tests {
 
     #[test]
     fn what_is_no_desk_is_an_empty_one() {
-        for text in ["", "{}", "not json", r#"{"shown":0,"target":"","sources":[]}"#] {
+        for text in ["", "{}", "0\t\n", "0\t\npick\tkept\t\t\n", "x\t\ntext\t\t\t\tx\n"] {
             assert_eq!(read(text), None, "{text}");
         }
-        let beyond = r#"{"shown":9,"target":"","sources":[{"file":null,"encoding":"?","text":"x","dialect":"?","picks":[]}]}"#;
-        assert_eq!(read(beyond).map(|desk| (desk.shown, desk.sources.len())), Some((0, 1)));
+        let beyond = read("9\t\ntext\t\t?\t?\tx\n").map(|desk| (desk.shown, desk.sources.len()));
+        assert_eq!(beyond, Some((0, 1)));
     }
 }

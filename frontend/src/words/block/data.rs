@@ -98,5 +98,15 @@ fn grid(subject: &Subject) -> Html {
     let sent = usize::try_from(draft.length()).ok().filter(|sent| readable && *sent <= bytes.len());
     let sent = sent.unwrap_or(bytes.len());
     let tree = Rc::new(explain::data_to_send(draft.config.form(), &bytes, sent));
-    html! { <WordGrid label="Data_to_Send" words={Rc::<[u16]>::from(words)} {tree} bytes={sent} test="sent-words" /> }
+    let drawn: Rc<[u16]> = words.iter().copied().take(MOST_DRAWN).collect();
+    let left = words.len() - drawn.len();
+    html! { <>
+        <WordGrid label="Data_to_Send" words={drawn} {tree} bytes={sent} test="sent-words" />
+        if left > 0 {
+            <p class="hint" data-test="words-left">{ tr!("data.left", count = left) }</p>
+        }
+    </> }
 }
+
+/// Words with a cell each. More are sent all the same.
+const MOST_DRAWN: usize = 512;

@@ -1,4 +1,7 @@
-use cipdeck_shared::config::MsgCipGeneric;
+use cipdeck_shared::{
+    code::Found,
+    config::{BlockId, MsgCipGeneric},
+};
 
 use super::*;
 
