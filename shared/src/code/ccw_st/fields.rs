@@ -36,7 +36,8 @@ struct Field {
 pub(super) struct Fields(Vec<Field>);
 
 impl Fields {
-    /// Of a layout. Fields that the data does not hold, and those that have no type on a Micro800, stay bytes.
+    /// Of a layout. Fields that the data does not hold, and those that have no type or no constant on a Micro800, stay
+    /// bytes.
     pub(super) fn of(layout: &str, data: Option<&[u8]>, name: &str) -> Self {
         let fields = DataFields::read(layout);
         let fields = fields.as_ref().map_or(&[][..], |fields| fields.each());
@@ -47,6 +48,11 @@ impl Fields {
             if data.is_some_and(|data| data.len() < field.from + size) {
                 return None;
             }
+            // A variable without its value would be packed over the bytes: no infinity becomes 0 in silence.
+            let initial = match data {
+                Some(data) => Some(initial(field, data)?),
+                None => None,
+            };
             let direction = if data.is_some() { "req" } else { "res" };
             let inner = if field.name.is_empty() { "value".into() } else { identifier(&field.name) };
             let mut variable = format!("{name}_{direction}_{inner}");
@@ -56,7 +62,6 @@ impl Fields {
                 }
                 variable = format!("{name}_{direction}_{inner}_{number}");
             }
-            let initial = data.and_then(|data| initial(field, data));
             Some(Field { variable, kind, from: field.from, size, way, initial })
         });
         Self(fields.collect())

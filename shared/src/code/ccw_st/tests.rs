@@ -130,6 +130,23 @@ Motor := 5;
 }
 
 #[test]
+fn a_value_that_no_constant_says_stays_bytes() {
+    let mut config = MsgCipGeneric::product_name("4,192.168.1.100");
+    (config.app_cfg.service, config.name) = (16, "m".into());
+    config.req_layout = "nan: REAL; endless: LREAL; odd: BOOL; n: UINT".into();
+    config.req_data = "0000c07f 000000000000f0ff 02 0500".into();
+    let text = export(&config.clone().into()).text;
+    for field in ["m_req_nan", "m_req_endless", "m_req_odd"] {
+        assert!(!text.contains(field), "{field} has no value, and would be packed over the bytes\n{text}");
+    }
+    assert!(text.contains("m_req_n : UINT := 5;") && text.contains("m_Req[13] := 2;"), "{text}");
+    assert_eq!(
+        request(&import(&without_comments(&text)).blocks[0]),
+        "100320012401300700 00c07f000000000000f0ff020500".replace(' ', "")
+    );
+}
+
+#[test]
 fn what_cannot_be_known_is_told_where_it_is() {
     let imported = import(
         "a.Service := Code; a.Class := 300000; a.Colour := 5;
