@@ -99,6 +99,11 @@ impl Change {
         Self { member, from, to, grade, why }
     }
 
+    /// Whether another request would be sent, or to another device.
+    pub(super) fn is_other_request(&self) -> bool {
+        self.grade == Grade::Request
+    }
+
     /// Whether something is adjusted, lost, or sent otherwise.
     pub const fn is_loss(&self) -> bool {
         !matches!(self.grade, Grade::Carried)

@@ -70,6 +70,11 @@ pub(super) fn harmless(words: &str) -> String {
     plain
 }
 
+/// Stands before what must not run before somebody has looked at it: it would send another request, or to another
+/// device.
+pub(super) const HELD: &str =
+    "(* FALSE keeps this from running: see what is NOT CARRIED, then take it out. *)";
+
 /// One more line of a program.
 pub(super) fn line(out: &mut String, text: &str) {
     out.push_str(text);

@@ -46,9 +46,22 @@ pub(in crate::code) fn import(text: &str) -> Imported {
         let words = "there are too many values in this text: some were left out";
         imported.remarks.push(Remark::error(1, 1, "", RemarkKind::told(&words)));
     }
+    if imported.blocks.is_empty()
+        && let Some(remark) = l5k(text)
+    {
+        return Imported { blocks: Vec::new(), remarks: alloc::vec![remark] };
+    }
     let severity = if imported.blocks.is_empty() { Severity::Error } else { Severity::Note };
     imported.remarks.extend(crate::code::text::left_over(&script, names, severity));
     imported
+}
+
+/// The other text form of Logix: nothing of it is Structured Text, and every line of it would be an error.
+fn l5k(text: &str) -> Option<Remark> {
+    let (at, line) = text.lines().enumerate().find(|(_, line)| line.contains("(MessageType :="))?;
+    let words =
+        "this is an L5K text, of which nothing is read: save the project or its parts as L5X in Studio 5000";
+    Some(Remark::error(at + 1, 1, line, RemarkKind::told(&words)))
 }
 
 /// Bytes of the request that come from other variables: their values are not known here.

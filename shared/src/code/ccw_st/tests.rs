@@ -220,3 +220,19 @@ MSG_CIPGENERIC_2(IN := go, CtrlCfg := c, AppCfg := a, TargetCfg := t, ReqData :=
     assert_eq!(imported.blocks[0].config.as_msg().unwrap().name, "MSG_CIPGENERIC_2");
     assert!(told(&imported).iter().any(|it| it.contains("COP is not carried out here")));
 }
+
+#[test]
+fn what_would_reach_another_device_does_not_run() {
+    let config = MsgCipGeneric::product_name("4,10.0.0.1:44820");
+    assert!(
+        export(&config.into()).text.contains("product_name(FALSE AND product_name_IN, product_name_Ctrl,")
+    );
+}
+
+#[test]
+fn a_text_of_logix_is_told_once() {
+    let text = "CONTROLLER Line4\nTAG\n  Read : MESSAGE (MessageType := CIP Generic,\n    ServiceCode := 16#000E);\nEND_TAG\n";
+    let told = told(&crate::code::import(text, None));
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("3:1: error: this is an L5K text"), "{told:?}");
+}

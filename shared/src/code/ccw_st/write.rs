@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use super::fields::{Fields, Way};
 use crate::code::Code;
 use crate::code::change::{Change, Grade, Why};
-use crate::code::header::{harmless, line};
+use crate::code::header::{HELD, harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
 use crate::code::text::quoted;
@@ -30,7 +30,8 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
     let reply = Fields::of(&message.config.res_layout, None, &name);
     let changes = changes(&message, &name, &request, &reply);
     let mut text = String::new();
-    let section = Section { message: &message, name: &name, request: &request, reply: &reply };
+    let held = changes.iter().any(Change::is_other_request);
+    let section = Section { message: &message, name: &name, request: &request, reply: &reply, held };
     section.write(&mut text);
     Code { text, changes }
 }
@@ -59,6 +60,8 @@ struct Section<'m> {
     name: &'m str,
     request: &'m Fields,
     reply: &'m Fields,
+    /// It must not run as it is.
+    held: bool,
 }
 
 impl Section<'_> {
@@ -164,10 +167,14 @@ impl Section<'_> {
     fn call(&self, out: &mut String) {
         let name = self.name;
         let length = self.message.data().len();
+        if self.held {
+            line(out, HELD);
+        }
+        let start = format!("{}{name}_IN", if self.held { "FALSE AND " } else { "" });
         line(
             out,
             &format!(
-                "{name}({name}_IN, {name}_Ctrl, {name}_App, {name}_Target, {name}_Req, {length}, {name}_Res);"
+                "{name}({start}, {name}_Ctrl, {name}_App, {name}_Target, {name}_Req, {length}, {name}_Res);"
             ),
         );
     }

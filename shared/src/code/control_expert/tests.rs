@@ -351,3 +351,15 @@ fn a_file_without_an_exchange_is_told() {
     let broken = crate::code::import("<STExchangeFile>\n<program></STExchangeFile>", None);
     assert!(broken.remarks[0].to_string().contains("not XML"), "{:?}", broken.remarks);
 }
+
+#[test]
+fn what_would_reach_another_device_does_not_run() {
+    let mut config = golden(0);
+    config.address = "ADDR('0.2.0.192.168.1.102:44820')".into();
+    let block = BlockConfig::from(config.clone());
+    assert!(export(&block, Language::St).text.contains("IF FALSE AND "));
+    let il = export(&block, Language::Il).text;
+    assert!(il.contains("    LD FALSE\n    AND "), "{il}");
+    config.address = "ADDR('0.2.0.192.168.1.102')".into();
+    assert!(!export(&config.into(), Language::St).text.contains("FALSE AND"));
+}

@@ -8,7 +8,7 @@ use core::fmt::Write;
 use super::super::Code;
 use super::super::change::{Change, Grade, Why};
 use super::super::dialect::Language;
-use super::super::header::harmless;
+use super::super::header::{HELD, harmless};
 use super::super::message::{Ours, not_sendable, ours_alone};
 use super::super::name::{MAX_NAME, identifier};
 use super::words::{about, list};
@@ -32,7 +32,8 @@ pub(in super::super) fn export(block: &BlockConfig, language: Language) -> Code 
         changes.push(Change::new(&"name", &config.name, &name, Grade::Carried, Why::NameCharacters));
     }
     let address = without_port(address);
-    let section = Section { config, words: &words, plan: &plan, address: &address, name: &name };
+    let held = changes.iter().any(Change::is_other_request);
+    let section = Section { config, words: &words, plan: &plan, address: &address, name: &name, held };
     let mut text = section.head();
     text.push_str(&match language {
         Language::St => section.st(),
@@ -82,6 +83,8 @@ struct Section<'a> {
     plan: &'a MessagePlan,
     address: &'a PlcAddress,
     name: &'a str,
+    /// It must not run as it is.
+    held: bool,
 }
 
 impl Section<'_> {
@@ -146,13 +149,20 @@ impl Section<'_> {
         }
     }
 
+    /// Why it does not run, if it does not.
+    fn held(&self) -> String {
+        if self.held { format!("{HELD}\n") } else { String::new() }
+    }
+
     fn st(&self) -> String {
         let Self { words, name, address, .. } = self;
         let [timeout, length] = self.management();
         let [timeout_words, length_words] = self.management_words();
         let (function, code) = self.function();
-        let mut text = format!("IF {name}_Start AND NOT {name}_Last AND NOT {name}_Mgmt[0].0 THEN\n");
+        let never = if self.held { "FALSE AND " } else { "" };
+        let mut text = self.held();
         // Writing to a String cannot fail.
+        let _ = writeln!(text, "IF {never}{name}_Start AND NOT {name}_Last AND NOT {name}_Mgmt[0].0 THEN");
         let _ = writeln!(text, "    {name}_Adr := {address};");
         for (index, word) in words.words.iter().enumerate() {
             let about = about(self.plan, words, index);
@@ -185,8 +195,12 @@ impl Section<'_> {
         let text = address.to_string();
         let (convert, argument) = text.split_once('(').unwrap_or(("ADDR", ""));
         let argument = argument.trim_end_matches(')');
-        let mut text = format!(
-            "    LD {name}_Start\n    ANDN {name}_Last\n    ANDN {name}_Mgmt[0].0\n    JMPCN {name}_Wait\n    \
+        let start = if self.held { "LD FALSE\n    AND" } else { "LD" };
+        let mut text = self.held();
+        // Writing to a String cannot fail.
+        let _ = write!(
+            text,
+            "    {start} {name}_Start\n    ANDN {name}_Last\n    ANDN {name}_Mgmt[0].0\n    JMPCN {name}_Wait\n    \
              LD {argument}\n    {convert}\n    ST {name}_Adr\n"
         );
         for (index, word) in words.words.iter().enumerate() {

@@ -25,7 +25,7 @@ pub(in super::super) fn export(block: &BlockConfig) -> Code {
     let changes = changes(&message);
     let text = Document { message: &message, name: identifier(&message.config.name) };
     // A request that is not the block's must not run before somebody has looked at it.
-    let held = changes.iter().any(|change| change.grade == Grade::Request);
+    let held = changes.iter().any(Change::is_other_request);
     Code { text: text.write(held), changes }
 }
 

@@ -86,16 +86,41 @@ pub(super) struct Head {
     pub(super) value: Option<usize>,
 }
 
-/// Whether the cells are a head: the first is a word for parameter, and no member.
-pub(super) fn head_of(cells: &[&str]) -> Option<Head> {
+/// Whether the columns are a head: the first is a word for parameter, and no member; or a word for name, with a column
+/// for types or initial values beside it, as in tables of variables.
+pub(super) fn head_of(columns: &[&str]) -> Option<Head> {
     let plain = |cell: &&str| cell.chars().filter_map(plain).collect::<String>();
-    let first = plain(cells.first()?);
+    let mut words = columns.iter().map(plain).filter(|word| !word.is_empty());
+    let first = words.next()?;
     let is_head = matches!(
         first.as_str(),
         "parametro" | "parameter" | "member" | "membro" | "miembro" | "campo" | "feld" | "elemento"
     );
-    let value = |cell: &&str| matches!(plain(cell).as_str(), "value" | "valor" | "wert");
-    is_head.then(|| Head { value: cells.iter().position(value) })
+    let is_name = matches!(first.as_str(), "name" | "nome" | "nombre" | "variable" | "variavel" | "tag");
+    let is_column = |word: &str| {
+        matches!(
+            word,
+            "datatype"
+                | "type"
+                | "tipo"
+                | "tipodedados"
+                | "tipodedatos"
+                | "datentyp"
+                | "typ"
+                | "initialvalue"
+                | "valorinicial"
+                | "anfangswert"
+                | "initialwert"
+        )
+    };
+    let value = |cell: &&str| {
+        matches!(
+            plain(cell).as_str(),
+            "value" | "valor" | "wert" | "initialvalue" | "valorinicial" | "anfangswert" | "initialwert"
+        )
+    };
+    let is_table = is_head || is_name && words.any(|word| is_column(&word));
+    is_table.then(|| Head { value: columns.iter().position(value) })
 }
 
 /// `---+---`, `|---|---|`

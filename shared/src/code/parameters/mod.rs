@@ -26,7 +26,7 @@ pub(super) fn is_row(line: &str) -> bool {
     }
     let cells = cells(line);
     let named = cells.first().is_some_and(|name| member(name).is_some());
-    cells.len() > 1 && (named || head_of(&cells).is_some())
+    cells.len() > 1 && (named || head_of(&columns(line)).is_some())
 }
 
 /// Blocks from a table.
@@ -60,7 +60,7 @@ impl Table {
         if cells.is_empty() || is_rule(line) {
             return;
         }
-        if let Some(head) = head_of(&cells) {
+        if let Some(head) = head_of(&columns(line)) {
             self.value_at = head.value;
             // A head begins a block, unless it is the head of another structure of the same one.
             if self.block.as_ref().is_some_and(|block| {
@@ -138,8 +138,15 @@ impl Block {
             self.remarks.push(Remark::note(number, 1, line, what));
             return;
         }
+        let in_column = value_at.and_then(|at| columns(line).get(at).copied());
+        if in_column == Some("") {
+            // A variable without an initial value.
+            let what = RemarkKind::NoEffect(format!("{name} without a value"));
+            self.remarks.push(Remark::note(number, 1, line, what));
+            return;
+        }
         self.told.push(member);
-        let value = value_at.and_then(|at| cells.get(at).copied()).or_else(|| member::value(member, cells));
+        let value = in_column.or_else(|| member::value(member, cells));
         let column = |value: &str| {
             line.find(value).and_then(|at| line.get(..at)).map_or(1, |it| it.chars().count() + 1)
         };
@@ -203,6 +210,16 @@ impl Block {
         }
         Ok(())
     }
+}
+
+/// All columns of a row, also those that are empty, where tabs or bars are between them.
+fn columns(line: &str) -> Vec<&str> {
+    let line = line.trim_matches(['\r', '\n']);
+    if line.contains('\t') {
+        return line.split('\t').map(str::trim).collect();
+    }
+    let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
+    if line.contains('|') { inner.split('|').map(str::trim).collect() } else { cells(line) }
 }
 
 /// The cells of a row: between tabs or bars; if there are none, between semicolons, or else between several spaces.

@@ -83,3 +83,28 @@ fn what_is_not_known_is_told_at_its_row() {
     );
     assert!(!is_row("a := 5;") && !is_row("Service") && !is_row("0E 03 20"));
 }
+
+#[test]
+fn a_table_of_variables_is_read_by_its_column_of_initial_values() {
+    let text = "Name\tAlias\tData Type\tDimension\tInitial Value\tComment
+AppCfg\t\tCIPAPPCFG\t\t\t
+AppCfg.Service\tread\tUSINT\t\t14\tGet
+AppCfg.Class\t\tUINT\t\t1\t
+AppCfg.Instance\t\tUDINT\t\t1\t
+AppCfg.Attribute\t\tUINT\t\t7\t
+AppCfg.MemberCnt\t\tUSINT\t\t\t
+TargetCfg.Path\t\tSTRING\t80\t'4,192.168.1.5'\t
+TargetCfg.UcmmTimeout\t\tUDINT\t\t500\t2
+";
+    let imported = import(text);
+    assert_eq!(requests(&imported), ["2..10 192.168.1.5:44818 0e03200124013007"]);
+    let config = imported.blocks[0].config.as_msg().unwrap();
+    assert_eq!((config.name.as_str(), config.target_cfg.ucmm_timeout), ("message-1", 500));
+    assert_eq!(
+        told(&imported),
+        [
+            "2:1: note: AppCfg changes nothing about the message: AppCfg\t\tCIPAPPCFG",
+            "7:1: note: AppCfg.MemberCnt without a value changes nothing about the message: AppCfg.MemberCnt\t\tUSINT",
+        ]
+    );
+}

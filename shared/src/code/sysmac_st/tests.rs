@@ -186,7 +186,15 @@ fn a_connection_has_one_timeout() {
     let code = export(&config.into());
     let losses: Vec<_> =
         code.losses().map(|it| (it.member.as_str(), it.to.as_str(), it.why.name())).collect();
-    assert_eq!(losses, [("TargetCfg.UcmmTimeout", "900", "one_timeout")]);
+    // A connection that stays would be opened anew at each start.
+    let expected = [
+        ("TargetCfg.UcmmTimeout", "900", "one_timeout"),
+        ("TargetCfg.ConnClose", "TRUE", "connection_stays"),
+    ];
+    assert_eq!(losses, expected);
+    assert!(
+        code.text.contains("_Close(Execute := ") && code.text.contains("Error => product_name_OpenError")
+    );
     assert_eq!(code.text.matches("TimeOut :=").count(), 1);
     assert!(code.text.contains("TimeOut := UINT#9, (* 900 ms *)\n    Handle => "), "{}", code.text);
 }
@@ -196,4 +204,14 @@ fn the_comment_shows_what_is_sent() {
     let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
     (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
     assert!(export(&config.into()).text.contains("(* request 0E 03 20 01 24 01 30 07 *)"));
+}
+
+#[test]
+fn what_would_reach_something_else_does_not_run() {
+    let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
+    assert!(!export(&config.clone().into()).text.contains("FALSE AND"));
+    (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
+    assert!(export(&config.clone().into()).text.contains("(Execute := FALSE AND product_name_Start,"));
+    config.target_cfg.cip_conn_mode = 1;
+    assert!(export(&config.into()).text.contains("_Open(Execute := FALSE AND product_name_Start,"));
 }

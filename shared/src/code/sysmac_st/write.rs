@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use super::{SEGMENTS, route, width};
 use crate::code::Code;
 use crate::code::change::{Change, Grade, Why};
-use crate::code::header::{harmless, line};
+use crate::code::header::{HELD, harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
 use crate::code::text::quoted;
@@ -32,7 +32,8 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
     changes.extend(message.renamed(&name));
     changes.extend(message.without_members());
     let mut out = String::new();
-    let section = Section { message: &message, name: &name, route: &route };
+    let held = changes.iter().any(Change::is_other_request);
+    let section = Section { message: &message, name: &name, route: &route, held };
     section.about(&mut out);
     section.declarations(&mut out);
     section.path(&mut out);
@@ -49,7 +50,11 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
                 changes.push(Change::new(&member, &ucmm, &connection.timeout_ms, Grade::Adjusted, why));
             }
             let timeout = steps(connection.timeout_ms, "TargetCfg.ConnMsgTimeout", &mut changes);
-            section.connected(timeout, connection.close, &mut out);
+            if !connection.close {
+                let (member, why) = ("TargetCfg.ConnClose", Why::ConnectionStays);
+                changes.push(Change::new(&member, &"FALSE", &"TRUE", Grade::Adjusted, why));
+            }
+            section.connected(timeout, &mut out);
         }
     }
     Code { text: out, changes }
@@ -69,6 +74,8 @@ struct Section<'m> {
     message: &'m Message<'m>,
     name: &'m str,
     route: &'m str,
+    /// It must not run as it is.
+    held: bool,
 }
 
 impl Section<'_> {
@@ -91,11 +98,16 @@ impl Section<'_> {
         line(out, "VAR");
         let mut declare = |ending: &str, kind: &str| line(out, &format!("    {name}{ending} : {kind};"));
         declare("", block);
-        if let Some(connection) = connected {
-            declare("_Open", "CIPOpen");
-            declare("_Handle", "_sCIP_HANDLE");
-            if connection.close {
-                declare("_Close", "CIPClose");
+        if connected.is_some() {
+            for (ending, kind) in [
+                ("_Open", "CIPOpen"),
+                ("_Handle", "_sCIP_HANDLE"),
+                ("_Close", "CIPClose"),
+                ("_OpenError", "BOOL"),
+                ("_OpenErrorID", "WORD"),
+                ("_OpenErrorIDEx", "DWORD"),
+            ] {
+                declare(ending, kind);
             }
         }
         declare("_Start", "BOOL");
@@ -155,31 +167,39 @@ impl Section<'_> {
 
     fn unconnected(&self, timeout: u32, out: &mut String) {
         let (name, route) = (self.name, quoted(self.route));
-        line(out, &format!("{name}(Execute := {name}_Start,\n    RoutePath := {route},"));
+        let start = self.start(out);
+        line(out, &format!("{name}(Execute := {start},\n    RoutePath := {route},"));
         line(out, &format!("    TimeOut := UINT#{timeout}, (* {} ms *)", timeout * STEP));
         line(out, &self.service());
     }
 
-    /// The timeout is that of the connection: `CIPSend` has none of its own.
-    fn connected(&self, timeout: u32, close: bool, out: &mut String) {
+    /// What starts it.
+    fn start(&self, out: &mut String) -> String {
+        if self.held {
+            line(out, HELD);
+        }
+        format!("{}{}_Start", if self.held { "FALSE AND " } else { "" }, self.name)
+    }
+
+    /// Opened, used and closed each time: a connection that stays would be opened anew at each start, until there are no
+    /// more. The timeout is that of the connection: `CIPSend` has none of its own.
+    fn connected(&self, timeout: u32, out: &mut String) {
         let (name, route) = (self.name, quoted(self.route));
-        line(out, &format!("{name}_Open(Execute := {name}_Start,\n    RoutePath := {route},"));
+        let start = self.start(out);
+        line(out, &format!("{name}_Open(Execute := {start},\n    RoutePath := {route},"));
+        line(out, &format!("    TimeOut := UINT#{timeout}, (* {} ms *)", timeout * STEP));
         line(
             out,
             &format!(
-                "    TimeOut := UINT#{timeout}, (* {} ms *)\n    Handle => {name}_Handle);",
-                timeout * STEP
+                "    Handle => {name}_Handle,\n    Error => {name}_OpenError,\n    ErrorID => {name}_OpenErrorID,\n    \
+                 ErrorIDEx => {name}_OpenErrorIDEx);"
             ),
         );
         line(out, &format!("{name}(Execute := {name}_Open.Done,\n    Handle := {name}_Handle,"));
         line(out, &self.service());
-        if close {
-            line(
-                out,
-                &format!(
-                    "{name}_Close(Execute := {name}.Done OR {name}.Error,\n    Handle := {name}_Handle);"
-                ),
-            );
-        }
+        line(
+            out,
+            &format!("{name}_Close(Execute := {name}.Done OR {name}.Error,\n    Handle := {name}_Handle);"),
+        );
     }
 }
