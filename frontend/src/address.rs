@@ -11,8 +11,21 @@ thread_local! {
     static WATCHERS: Watchers = Watchers::default();
 }
 
-/// Goes to another address of this document.
-pub fn go(to: &str) {
+/// The pages of a document: each has an address.
+pub trait Pages: Copy + PartialEq + 'static {
+    /// The page of a path.
+    fn read(path: &str) -> Self;
+
+    /// The path of a page.
+    fn path(self) -> String;
+}
+
+/// Goes to another page of this document.
+pub fn go(to: impl Pages) {
+    push(&to.path());
+}
+
+fn push(to: &str) {
     if let Some(history) = history() {
         // Refused only for an address of another server.
         let _ = history.push_state_with_url(&JsValue::NULL, "", Some(to));
@@ -68,8 +81,31 @@ pub fn use_path() -> String {
     path()
 }
 
-/// A link to an address of this document.
-pub fn link(to: String, class: &'static str, words: Html) -> Html {
+/// Where we are; renders again when that changes.
+#[hook]
+pub fn use_page<P: Pages>() -> P {
+    P::read(&use_path())
+}
+
+#[derive(Clone, PartialEq, Properties)]
+struct RedirectProps {
+    to: String,
+}
+
+/// Shows nothing, and another page instead of this one: the back button does not lead here again.
+pub fn redirect(to: impl Pages) -> Html {
+    html! { <Redirect to={to.path()} /> }
+}
+
+#[component]
+fn Redirect(props: &RedirectProps) -> Html {
+    use_effect_with(props.to.clone(), |to| replace(to));
+    html! {}
+}
+
+/// A link to a page of this document.
+pub fn link(to: impl Pages, class: &'static str, words: Html) -> Html {
+    let to = to.path();
     let onclick = {
         let to = to.clone();
         move |event: MouseEvent| {
@@ -78,7 +114,7 @@ pub fn link(to: String, class: &'static str, words: Html) -> Html {
                 && !(event.ctrl_key() || event.meta_key() || event.shift_key() || event.alt_key());
             if plain {
                 event.prevent_default();
-                go(&to);
+                push(&to);
             }
         }
     };

@@ -15,7 +15,7 @@ use crate::{
         connection::Connection, connections::ConnectionsPage, deck::DeckPage, help::HelpPage,
         monitor::MonitorPage, not_found::not_found,
     },
-    route::{Route, link, use_route},
+    route::{Route, link, use_page},
     store::RowStore,
     theme::ThemeToggle,
     workbench::Workbench,
@@ -53,7 +53,7 @@ fn open() -> Workbench {
 
 #[component]
 fn Frame() -> Html {
-    let route = use_route();
+    let route = use_page();
     let link_state = use_link();
     let bench = use_workbench();
     let writing = bench.relay().writing();

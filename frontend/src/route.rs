@@ -4,8 +4,9 @@
 
 use yew::prelude::*;
 
+pub use crate::address::{go, link, redirect, use_page};
 use crate::{
-    address::{self, use_path},
+    address::Pages,
     store::{DeckId, Row},
 };
 
@@ -26,9 +27,8 @@ pub enum Route {
     NotFound,
 }
 
-impl Route {
-    /// The page of a path.
-    pub fn read(path: &str) -> Self {
+impl Pages for Route {
+    fn read(path: &str) -> Self {
         let path = path.trim_end_matches('/');
         match path.strip_prefix("/deck/") {
             Some(id) => id.parse().map_or(Self::NotFound, Self::Block),
@@ -42,8 +42,7 @@ impl Route {
         }
     }
 
-    /// The path of a page.
-    pub fn path(self) -> String {
+    fn path(self) -> String {
         match self {
             Self::Deck => "/".to_owned(),
             Self::Block(id) => format!("/deck/{id}"),
@@ -55,42 +54,12 @@ impl Route {
     }
 }
 
-/// Goes to a page.
-pub fn go(to: Route) {
-    address::go(&to.path());
-}
-
-/// Where we are; renders again when that changes.
-#[hook]
-pub fn use_route() -> Route {
-    Route::read(&use_path())
-}
-
-/// A link to a page.
-pub fn link(to: Route, class: &'static str, words: Html) -> Html {
-    address::link(to.path(), class, words)
-}
-
 /// A link to a block: a `SEND_REQ` or `DATA_EXCH` has its page in another document.
 pub fn block_link(row: &Row, words: Html) -> Html {
     if row.config.as_msg().is_some() {
         return link(Route::Block(row.id), "", words);
     }
     html! { <a href={format!("/words/{}", row.id)}>{ words }</a> }
-}
-
-/// Where to go instead.
-#[derive(Clone, Debug, PartialEq, Properties)]
-pub struct RedirectProps {
-    /// The page.
-    pub to: Route,
-}
-
-/// Replaces this address: the back button does not lead here again.
-#[component]
-pub fn Redirect(props: &RedirectProps) -> Html {
-    use_effect_with(props.to, |to| address::replace(&to.path()));
-    html! {}
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     access::{refused, use_writing, who, write_banner},
-    address,
+    address::{self, Pages},
     hooks::{use_second, use_session},
     net::{Link, session},
     theme::ThemeToggle,

@@ -1,9 +1,8 @@
 //! The addresses of this document's pages.
 
+use crate::address::Pages;
+pub use crate::address::{link, use_page};
 use cipdeck_shared::config::BlockId;
-use yew::prelude::*;
-
-use crate::address::{self, use_path};
 
 /// A page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,9 +17,8 @@ pub enum Page {
     NotFound,
 }
 
-impl Page {
-    /// The page of a path.
-    pub fn read(path: &str) -> Self {
+impl Pages for Page {
+    fn read(path: &str) -> Self {
         let Some(rest) = path.trim_end_matches('/').strip_prefix("/code") else { return Self::NotFound };
         match rest {
             "" => Self::Import,
@@ -32,13 +30,7 @@ impl Page {
         }
     }
 
-    /// Whether it is of the document that writes code.
-    pub const fn is_out(self) -> bool {
-        matches!(self, Self::Export(_) | Self::Project)
-    }
-
-    /// The path of a page.
-    pub fn path(self) -> String {
+    fn path(self) -> String {
         match self {
             Self::Import => "/code".to_owned(),
             Self::Export(id) => format!("/code/{id}"),
@@ -48,15 +40,11 @@ impl Page {
     }
 }
 
-/// Where we are; renders again when that changes.
-#[hook]
-pub fn use_page() -> Page {
-    Page::read(&use_path())
-}
-
-/// A link to a page.
-pub fn link(to: Page, class: &'static str, words: Html) -> Html {
-    address::link(to.path(), class, words)
+impl Page {
+    /// Whether it is of the document that writes code.
+    pub const fn is_out(self) -> bool {
+        matches!(self, Self::Export(_) | Self::Project)
+    }
 }
 
 #[cfg(test)]

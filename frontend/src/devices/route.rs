@@ -1,9 +1,8 @@
 //! The addresses of this document's pages.
 
+use crate::address::Pages;
+pub use crate::address::{go, link, use_page};
 use cipdeck_shared::config::{DeviceId, GroupId};
-use yew::prelude::*;
-
-use crate::address::{self, use_path};
 
 /// A page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,9 +19,8 @@ pub enum Page {
     NotFound,
 }
 
-impl Page {
-    /// The page of a path.
-    pub fn read(path: &str) -> Self {
+impl Pages for Page {
+    fn read(path: &str) -> Self {
         let Some(rest) = path.trim_end_matches('/').strip_prefix("/devices") else { return Self::NotFound };
         match rest {
             "" => Self::All,
@@ -35,8 +33,7 @@ impl Page {
         }
     }
 
-    /// The path of a page.
-    pub fn path(self) -> String {
+    fn path(self) -> String {
         match self {
             Self::All => "/devices".to_owned(),
             Self::New => "/devices/new".to_owned(),
@@ -45,22 +42,6 @@ impl Page {
             Self::NotFound => "/devices/404".to_owned(),
         }
     }
-}
-
-/// Goes to a page.
-pub fn go(to: Page) {
-    address::go(&to.path());
-}
-
-/// Where we are; renders again when that changes.
-#[hook]
-pub fn use_page() -> Page {
-    Page::read(&use_path())
-}
-
-/// A link to a page.
-pub fn link(to: Page, class: &'static str, words: Html) -> Html {
-    address::link(to.path(), class, words)
 }
 
 #[cfg(test)]

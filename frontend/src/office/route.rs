@@ -1,9 +1,8 @@
 //! The addresses of the office's pages.
 
+use crate::address::Pages;
+pub use crate::address::{go, link, use_page};
 use cipdeck_shared::{api::Role, config::BlockId};
-use yew::prelude::*;
-
-use crate::address::{self, use_path};
 
 /// A page of the office.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,21 +33,8 @@ pub enum Page {
     NotFound,
 }
 
-impl Page {
-    /// Those of the navigation, in its order.
-    pub const LISTED: [Self; 8] = [
-        Self::Overview,
-        Self::Users,
-        Self::Sessions,
-        Self::Tokens,
-        Self::ViewLinks,
-        Self::Allowed,
-        Self::Audit,
-        Self::History(None),
-    ];
-
-    /// The page of a path.
-    pub fn read(path: &str) -> Self {
+impl Pages for Page {
+    fn read(path: &str) -> Self {
         let Some(rest) = path.trim_end_matches('/').strip_prefix("/office") else { return Self::NotFound };
         if let Some(id) = rest.strip_prefix("/data/") {
             return id.parse().map_or(Self::NotFound, Self::Data);
@@ -71,8 +57,7 @@ impl Page {
         }
     }
 
-    /// The path of a page.
-    pub fn path(self) -> String {
+    fn path(self) -> String {
         let rest = match self {
             Self::Overview => "",
             Self::SignIn => "/sign-in",
@@ -90,6 +75,20 @@ impl Page {
         };
         format!("/office{rest}")
     }
+}
+
+impl Page {
+    /// Those of the navigation, in its order.
+    pub const LISTED: [Self; 8] = [
+        Self::Overview,
+        Self::Users,
+        Self::Sessions,
+        Self::Tokens,
+        Self::ViewLinks,
+        Self::Allowed,
+        Self::Audit,
+        Self::History(None),
+    ];
 
     /// Whether a role has anything to do there. The relay decides; this only leaves out what it would refuse.
     pub const fn is_for(self, role: Role) -> bool {
@@ -99,22 +98,6 @@ impl Page {
             _ => true,
         }
     }
-}
-
-/// Goes to a page.
-pub fn go(to: Page) {
-    address::go(&to.path());
-}
-
-/// Where we are; renders again when that changes.
-#[hook]
-pub fn use_page() -> Page {
-    Page::read(&use_path())
-}
-
-/// A link to a page.
-pub fn link(to: Page, class: &'static str, words: Html) -> Html {
-    address::link(to.path(), class, words)
 }
 
 /// Where to go after signing in: a path of this relay and nothing else, whatever the address says.

@@ -1,11 +1,7 @@
 //! The addresses of this document's pages.
 
-use yew::prelude::*;
-
-use crate::{
-    address::{self, use_path},
-    store::DeckId,
-};
+pub use crate::address::{go, link, redirect, use_page};
+use crate::{address::Pages, store::DeckId};
 
 /// A page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,9 +16,8 @@ pub enum Page {
     NotFound,
 }
 
-impl Page {
-    /// The page of a path.
-    pub fn read(path: &str) -> Self {
+impl Pages for Page {
+    fn read(path: &str) -> Self {
         let Some(rest) = path.trim_end_matches('/').strip_prefix("/words") else { return Self::NotFound };
         match rest.strip_prefix('/') {
             None if rest.is_empty() => Self::All,
@@ -32,8 +27,7 @@ impl Page {
         }
     }
 
-    /// The path of a page.
-    pub fn path(self) -> String {
+    fn path(self) -> String {
         match self {
             Self::All => "/words".to_owned(),
             Self::New => "/words/new".to_owned(),
@@ -41,22 +35,6 @@ impl Page {
             Self::NotFound => "/words/404".to_owned(),
         }
     }
-}
-
-/// Goes to a page.
-pub fn go(to: Page) {
-    address::go(&to.path());
-}
-
-/// Where we are; renders again when that changes.
-#[hook]
-pub fn use_page() -> Page {
-    Page::read(&use_path())
-}
-
-/// A link to a page.
-pub fn link(to: Page, class: &'static str, words: Html) -> Html {
-    address::link(to.path(), class, words)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::{
     i18n::tr,
     net::session,
     pages::block::BlockPane,
-    route::{self, Redirect, Route},
+    route::{self, Route, redirect},
     store::DeckId,
     workbench::{Gone, Workbench},
 };
@@ -72,8 +72,8 @@ fn Chosen(props: &ChosenProps) -> Html {
         return html! { <BlockPane key={id.to_string()} {id} /> };
     }
     match bench.gone(id) {
-        Some(Gone::Stored(to)) => html! { <Redirect to={Route::Block(to)} /> },
-        Some(Gone::Deleted) => html! { <Redirect to={Route::Deck} /> },
+        Some(Gone::Stored(to)) => redirect(Route::Block(to)),
+        Some(Gone::Deleted) => redirect(Route::Deck),
         None if bench.relay().is_undecided() => {
             html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> }
         }

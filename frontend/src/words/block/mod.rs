@@ -29,7 +29,7 @@ use super::{
     frame::stale_note,
     hooks::{use_desk, use_draft, use_link, use_row},
     i18n::tr,
-    route::{self, Page, link},
+    route::{self, Page, link, redirect},
     verdict::Verdict,
 };
 use crate::{
@@ -61,26 +61,14 @@ pub(super) fn BlockPage(props: &BlockPageProps) -> Html {
             </div>
         },
         None => match desk.gone(id) {
-            Some(Gone::Stored(to)) => html! { <Redirect to={Page::Block(to)} /> },
-            Some(Gone::Deleted) => html! { <Redirect to={Page::All} /> },
+            Some(Gone::Stored(to)) => redirect(Page::Block(to)),
+            Some(Gone::Deleted) => redirect(Page::All),
             None if desk.relay().is_undecided() => {
                 html! { <p class="empty" role="status">{ tr!("deck.connecting") }</p> }
             }
             None => missing(&desk, id),
         },
     }
-}
-
-#[derive(Clone, PartialEq, Properties)]
-struct RedirectProps {
-    to: Page,
-}
-
-/// Replaces this address: the back button does not lead here again.
-#[component]
-fn Redirect(props: &RedirectProps) -> Html {
-    use_effect_with(props.to, |to| crate::address::replace(&to.path()));
-    html! {}
 }
 
 /// An entry that is not there; what was changed in it can be kept.
