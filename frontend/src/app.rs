@@ -4,19 +4,13 @@ use yew::prelude::*;
 
 use crate::{
     access::{refused, who, write_banner},
-    address, browser,
-    editor::DraftStore,
-    frame_stats::FrameStats,
     hooks::{use_link, use_second, use_session, use_workbench},
     i18n::tr,
-    net::{Relay, session},
-    notice::NoticeStore,
     pages::{
         connection::Connection, connections::ConnectionsPage, deck::DeckPage, help::HelpPage,
         monitor::MonitorPage, not_found::not_found,
     },
     route::{Route, link, use_page},
-    store::RowStore,
     theme::ThemeToggle,
     workbench::Workbench,
 };
@@ -27,28 +21,12 @@ const DRAFTS: &str = "cipdeck.drafts";
 /// The whole page.
 #[component]
 pub fn App() -> Html {
-    let bench = use_memo((), |()| open());
+    let bench = use_memo((), |()| Workbench::open(DRAFTS));
     html! {
         <ContextProvider<Workbench> context={(*bench).clone()}>
             <Frame />
         </ContextProvider<Workbench>>
     }
-}
-
-/// Opens the workbench of this browser, and starts to connect.
-fn open() -> Workbench {
-    let stats = FrameStats::default();
-    stats.offer();
-    let rows = RowStore::new(stats.ask_for_frame());
-    let drafts = DraftStore::new(
-        browser::kept(DRAFTS).as_deref(),
-        std::rc::Rc::new(|text| browser::keep(DRAFTS, text)),
-    );
-    let relay = Relay::new(rows.clone(), Callback::from(move |ms| stats.spend(ms)));
-    relay.connect();
-    session::watch_activity();
-    address::listen();
-    Workbench::new(rows, drafts, relay, NoticeStore::default())
 }
 
 #[component]

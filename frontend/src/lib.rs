@@ -7,7 +7,8 @@
 //! | [`net`] | the relay: socket, REST, when to come back |
 //! | [`demo`] | engine and simulated device in the browser alone |
 //! | [`access`] | who is here, what they may, and whether something may be written now |
-//! | [`workbench`] | what can be done with a block, and where it runs |
+//! | [`desk`] | the blocks of a document: stored, edited, commanded |
+//! | [`workbench`] | the desk of the workbench, and where its blocks run |
 //! | [`kit`] | small components on native elements |
 //! | [`pages`] | what people see |
 //! | [`office`] | the second document: users, lists, audit, history |
@@ -22,6 +23,7 @@ pub mod app;
 pub mod browser;
 pub mod code;
 pub mod demo;
+pub mod desk;
 pub mod devices;
 pub mod editor;
 pub mod frame_stats;

@@ -10,7 +10,6 @@ use cipdeck_frontend::{
     browser,
     editor::DraftStore,
     net::Relay,
-    notice::NoticeStore,
     pages::block::BlockPane,
     store::{DeckId, RowStore},
     workbench::Workbench,
@@ -42,7 +41,7 @@ fn Desk(props: &DeskProps) -> Html {
 async fn desk(config: MsgCipGeneric) -> (Element, Workbench, DeckId) {
     let rows = RowStore::new(Rc::new(browser::before_next_frame));
     let relay = Relay::new(rows.clone(), Callback::noop());
-    let bench = Workbench::new(rows, DraftStore::new(None, Rc::new(|_| ())), relay, NoticeStore::default());
+    let bench = Workbench::new(rows, DraftStore::new(None, Rc::new(|_| ())), relay);
     let id = bench.add(config);
     let root = render::<Desk>(DeskProps { bench: bench.clone(), id }).await;
     (root, bench, id)

@@ -13,7 +13,6 @@ use cipdeck_frontend::{
     editor::DraftStore,
     hooks::use_row,
     net::Relay,
-    notice::NoticeStore,
     store::{DeckId, RowStore},
     workbench::Workbench,
 };
@@ -77,7 +76,7 @@ async fn three_changes_in_one_frame_render_one_row_once_and_the_other_never() {
     rows.snapshot(vec![block(1), block(2)], vec![]);
     let (relay, drafts) =
         (Relay::new(rows.clone(), Callback::noop()), DraftStore::new(None, Rc::new(|_| ())));
-    let bench = Workbench::new(rows.clone(), drafts, relay, NoticeStore::default());
+    let bench = Workbench::new(rows.clone(), drafts, relay);
     let renders = vec![Renders(Rc::default()), Renders(Rc::default())];
     let root = render::<Lines>(LinesProps { bench, renders: renders.clone() }).await;
     for flush in asked.take() {

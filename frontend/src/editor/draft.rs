@@ -7,6 +7,7 @@ use cipdeck_shared::{
 };
 
 use super::{
+    editable::Editable,
     number::{number, set_number},
     remark::Remark,
 };
@@ -41,39 +42,9 @@ pub enum Edit {
 }
 
 impl Draft {
-    /// A draft of a configuration; `revision` if it is stored.
-    pub fn new(config: MsgCipGeneric, revision: Option<u64>) -> Self {
-        Self { revision, config, typed: Shelf::default(), refused: Vec::new() }
-    }
-
     /// A draft as it was kept over a reload.
     pub fn restored(config: MsgCipGeneric, revision: Option<u64>, typed: Shelf<Field, String>) -> Self {
         Self { typed, ..Self::new(config, revision) }
-    }
-
-    /// Takes in one change.
-    pub fn edit(&mut self, edit: Edit) {
-        self.refused.clear();
-        match edit {
-            Edit::Number(field, text) => self.type_number(field, text),
-            Edit::Text(field, text) => {
-                if let Some(member) = text_member(&mut self.config, &field) {
-                    *member = text;
-                }
-            }
-            Edit::Flag(field, on) => {
-                if let Some(member) = flag_member(&mut self.config, &field) {
-                    *member = on;
-                }
-            }
-            Edit::Channel(channel) => self.config.channel = channel,
-            Edit::Profile(profile) => self.config.profile = profile,
-        }
-    }
-
-    /// What the relay found, shown at the fields until the next change.
-    pub fn refuse(&mut self, findings: Vec<api::Finding>) {
-        self.refused = findings;
     }
 
     /// The text of a number field.
@@ -109,16 +80,55 @@ impl Draft {
         (plan.filter(|_| sendable), remarks)
     }
 
-    /// Whether storing it would change something, or cannot be tried yet.
-    pub fn differs_from(&self, stored: &MsgCipGeneric) -> bool {
-        self.config != *stored || self.typed.iter().any(|(field, text)| read(field, text).is_err())
-    }
-
     fn type_number(&mut self, field: Field, text: String) {
         if let Ok(value) = read(&field, &text) {
             set_number(&mut self.config, &field, value);
         }
         self.typed.insert(field, text);
+    }
+}
+
+impl Editable for Draft {
+    type Config = MsgCipGeneric;
+    type Edit = Edit;
+
+    fn new(config: MsgCipGeneric, revision: Option<u64>) -> Self {
+        Self { revision, config, typed: Shelf::default(), refused: Vec::new() }
+    }
+
+    fn config(&self) -> &MsgCipGeneric {
+        &self.config
+    }
+
+    fn revision(&mut self) -> &mut Option<u64> {
+        &mut self.revision
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        self.refused.clear();
+        match edit {
+            Edit::Number(field, text) => self.type_number(field, text),
+            Edit::Text(field, text) => {
+                if let Some(member) = text_member(&mut self.config, &field) {
+                    *member = text;
+                }
+            }
+            Edit::Flag(field, on) => {
+                if let Some(member) = flag_member(&mut self.config, &field) {
+                    *member = on;
+                }
+            }
+            Edit::Channel(channel) => self.config.channel = channel,
+            Edit::Profile(profile) => self.config.profile = profile,
+        }
+    }
+
+    fn refuse(&mut self, findings: Vec<api::Finding>) {
+        self.refused = findings;
+    }
+
+    fn differs_from(&self, stored: &MsgCipGeneric) -> bool {
+        self.config != *stored || self.typed.iter().any(|(field, text)| read(field, text).is_err())
     }
 }
 

@@ -164,7 +164,7 @@ const fn new_number(id: DeckId) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::Edit;
+    use crate::editor::{Edit, Editable};
     use cipdeck_shared::config::BlockId;
 
     fn kept() -> (DraftStore, Rc<RefCell<String>>) {

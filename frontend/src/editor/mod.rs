@@ -2,12 +2,14 @@
 
 mod draft;
 mod drafts;
+mod editable;
 mod number;
 mod remark;
 
 pub use self::{
     draft::{Draft, Edit},
     drafts::{DraftStore, Keep, Keepable},
+    editable::{Editable, Kind},
     number::{hexadecimal, number, other_radix},
     remark::Remark,
 };

@@ -99,13 +99,7 @@ impl Line<Deck> {
     fn take(&self, message: Heard) {
         let deck = self.carried();
         match message.kind.as_str() {
-            "hello" => {
-                if self.greeted(message.protocol, PROTOCOL_VERSION) {
-                    self.probe();
-                    let relay = self.clone();
-                    deck.probe.replace(Some(Interval::new(PROBE_MS, move || relay.probe())));
-                }
-            }
+            "hello" => self.hello(message.protocol),
             "access" => {
                 let (window, read_only, stopped) = (message.window, message.read_only, message.stopped);
                 self.heard_access(WriteState { window, read_only, stopped });
@@ -125,6 +119,14 @@ impl Line<Deck> {
             "answer" => deck.answered(message),
             // A message of a newer relay that we do not know is none of our business.
             _ => {}
+        }
+    }
+
+    fn hello(&self, protocol: u32) {
+        if self.greeted(protocol, PROTOCOL_VERSION) {
+            self.probe();
+            let relay = self.clone();
+            self.carried().probe.replace(Some(Interval::new(PROBE_MS, move || relay.probe())));
         }
     }
 

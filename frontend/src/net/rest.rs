@@ -5,7 +5,7 @@ use cipdeck_shared::{
         DiscoverRequest, Discovered, ExchangeView, Health, NewWindow, Problem, ProblemCode, SessionView,
         TargetStatus, WriteRequest, WriteTicket,
     },
-    config::{Block, BlockId, MsgCipGeneric},
+    config::{Block, BlockId},
 };
 use gloo_net::http::{Method, RequestBuilder};
 use serde::{Serialize, de::DeserializeOwned};
@@ -37,15 +37,13 @@ pub async fn is_active() -> Answered<()> {
 }
 
 /// Stores a new block.
-pub async fn create(config: &MsgCipGeneric) -> Answered<Block> {
+pub async fn create(config: &impl Serialize) -> Answered<Block> {
     parse(&ask(Method::POST, "blocks", Some(json(config)?)).await?)
 }
 
-/// Replaces a revision of a block.
-pub async fn replace(id: BlockId, revision: u64, mut config: MsgCipGeneric) -> Answered<Block> {
-    // One way to write configurations instead of two. The relay takes the id from the address.
-    config.extra.insert("revision".to_owned(), revision.into());
-    parse(&ask(Method::PUT, &format!("blocks/{id}"), Some(json(&config)?)).await?)
+/// Replaces a block by a configuration that says which revision was seen.
+pub async fn replace(id: BlockId, config: &impl Serialize) -> Answered<Block> {
+    parse(&ask(Method::PUT, &format!("blocks/{id}"), Some(json(config)?)).await?)
 }
 
 /// Deletes a block, if it still has this revision.

@@ -25,9 +25,6 @@ mod verdict;
 use yew::prelude::*;
 
 use self::{desk::Desk, frame::Frame};
-use crate::{
-    address, browser, editor::DraftStore, frame_stats::FrameStats, net::Relay, net::session, store::RowStore,
-};
 
 /// Where drafts are kept in the browser's local storage.
 const DRAFTS: &str = "cipdeck.words";
@@ -35,26 +32,10 @@ const DRAFTS: &str = "cipdeck.words";
 /// The whole document.
 #[component]
 pub fn Words() -> Html {
-    let desk = use_memo((), |()| open());
+    let desk = use_memo((), |()| Desk::open(DRAFTS));
     html! {
         <ContextProvider<Desk> context={(*desk).clone()}>
             <Frame />
         </ContextProvider<Desk>>
     }
-}
-
-/// Opens the desk of this browser, and starts to connect.
-fn open() -> Desk {
-    let stats = FrameStats::default();
-    stats.offer();
-    let rows = RowStore::new(stats.ask_for_frame());
-    let drafts = DraftStore::new(
-        browser::kept(DRAFTS).as_deref(),
-        std::rc::Rc::new(|text| browser::keep(DRAFTS, text)),
-    );
-    let relay = Relay::new(rows.clone(), Callback::from(move |ms| stats.spend(ms)));
-    relay.connect();
-    session::watch_activity();
-    address::listen();
-    Desk::new(rows, drafts, relay)
 }

@@ -7,7 +7,13 @@ use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
 use super::{commands::Commands, subject::Subject};
-use crate::{editor::Edit, hooks::use_workbench, i18n::tr, kit::describes};
+use crate::{
+    demo::Demo,
+    editor::{Draft, Edit},
+    hooks::use_workbench,
+    i18n::tr,
+    kit::describes,
+};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct HeadProps {
@@ -30,7 +36,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
     let on_save = use_callback((bench.clone(), id), |_: MouseEvent, (bench, id)| bench.save(*id));
     let on_revert = use_callback((bench, id), |_: MouseEvent, (bench, id)| bench.revert(*id));
     let no_save = subject.no_save();
-    let can_save = no_save.is_none() && subject.errors() == 0;
+    let can_save = subject.can_save();
     let can_revert = subject.unsaved && id.stored().is_some();
     let save_title = no_save.unwrap_or(tr!("save.title"));
     html! {
@@ -56,7 +62,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
                     { tr!("save.do") }
                 </button>
             </div>
-            <Commands subject={subject.clone()} status={props.status.clone()} />
+            <Commands<Draft, Demo> block={subject.commanded()} status={props.status.clone()} />
         </header>
     }
 }

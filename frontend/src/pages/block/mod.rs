@@ -9,6 +9,7 @@ mod exchange;
 mod fields;
 mod form;
 mod head;
+mod keys;
 mod notice;
 mod outcome;
 mod subject;
@@ -46,11 +47,10 @@ pub(crate) use self::{
     axis::duration,
     choices::{channel_field, profile_field},
     codes::error_words,
-    commands::{Key, use_keys},
+    commands::{Asks, Commanded, Commands},
     notice::{choice, differences, words},
     outcome::{age_words, decode, decoded, whole},
     trouble::{acted, explain},
-    write_dialog::WriteDialog,
     written::written,
 };
 

@@ -1,5 +1,7 @@
 //! What a block's page is about: the draft, checked.
 
+use std::rc::Rc;
+
 use cipdeck_shared::{
     api::Role,
     config::Profile,
@@ -7,6 +9,7 @@ use cipdeck_shared::{
 };
 use yew::AttrValue;
 
+use super::commands::{Asks, Commanded};
 use crate::{
     editor::{Draft, Remark},
     i18n::tr,
@@ -22,7 +25,7 @@ pub(crate) struct Subject {
     /// The stored revision; 0 if it is not stored.
     pub(crate) revision: u64,
     pub(crate) draft: Draft,
-    pub(crate) plan: Option<MessagePlan>,
+    pub(crate) plan: Option<Rc<MessagePlan>>,
     /// What the target is, as far as that is known.
     pub(crate) profile: Profile,
     pub(crate) remarks: Vec<Remark>,
@@ -36,12 +39,13 @@ impl Subject {
         let draft = bench.draft(id)?;
         let revision = bench.rows().row(id)?.revision;
         let (plan, remarks) = draft.check();
+        let plan = plan.map(Rc::new);
         let known = bench.relay().targets().profile(&draft.config.target_cfg.path);
         let profile = match draft.config.profile {
             Profile::Auto => known.unwrap_or_default(),
             chosen => chosen,
         };
-        let place = bench.place(plan.as_ref().map(MessagePlan::target));
+        let place = bench.place(plan.as_ref().map(|plan| plan.target()));
         let online = bench.relay().is_online();
         Some(Self {
             id,
@@ -77,9 +81,27 @@ impl Subject {
         self.plan.as_ref().is_some_and(|plan| plan.trigger() != TriggerType::Once)
     }
 
-    /// Whether it may be stopped: by everybody who may send.
-    pub(crate) fn may_command(&self) -> bool {
-        self.place != Place::Relay || session::may(Role::may_send)
+    /// What its commands have to know.
+    pub(crate) fn commanded(&self) -> Commanded {
+        let words = if self.is_cyclic() { tr!("run.in_cyclic") } else { tr!("run.in_once") };
+        let by_relay = self.place == Place::Relay;
+        Commanded {
+            id: self.id,
+            stored: self.id.stored().filter(|_| by_relay).map(|block| (block, self.revision)),
+            plan: self.plan.clone(),
+            switch: ("IN", words),
+            repeats: self.is_cyclic(),
+            obstacle: self.obstacle(),
+            asks: Asks::of(self.may_write(), by_relay && self.unsaved),
+            // By everybody who may send.
+            may_stop: !by_relay || session::may(Role::may_send),
+            can_save: self.can_save(),
+        }
+    }
+
+    /// Whether it can be stored now.
+    pub(crate) fn can_save(&self) -> bool {
+        self.no_save().is_none() && self.errors() == 0
     }
 
     /// Why it cannot be stored now.

@@ -15,13 +15,13 @@ use yew::{platform::spawn_local, prelude::*};
 use super::{notice::words, window_form::window_form};
 use crate::{
     browser,
+    desk::Consent,
     editor::hexadecimal,
     hooks::{use_link_of, use_second},
     i18n::tr,
     kit::Dialog,
     net::{Relay, rest},
     pages::block::whole,
-    workbench::Consent,
 };
 
 #[derive(Clone, PartialEq, Properties)]

@@ -4,11 +4,12 @@ use cipdeck_shared::config::{MsgCipGeneric, PathError, Target, TargetPath};
 use yew::prelude::*;
 
 use crate::{
+    desk::{Consent, Runs},
     hooks::{use_link, use_workbench},
     i18n::{rule_text, tr},
     pages::connections::discover::Discover,
     route::{self, Route},
-    workbench::{Consent, Place, Workbench},
+    workbench::{Place, Workbench},
 };
 
 /// The path of the demo device.

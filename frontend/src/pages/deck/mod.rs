@@ -9,13 +9,14 @@ use yew::prelude::*;
 
 use self::{first_start::FirstStart, list::BlockList};
 use crate::{
+    desk::Gone,
     hooks::{use_ids, use_link, use_row, use_title, use_workbench},
     i18n::tr,
     net::session,
     pages::block::BlockPane,
     route::{self, Route, redirect},
     store::DeckId,
-    workbench::{Gone, Workbench},
+    workbench::Workbench,
 };
 
 /// What is chosen.

@@ -6,11 +6,12 @@ use cipdeck_shared::{api::BlockStatus, plan::Field};
 use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
-use super::{commands::Commands, subject::Subject};
+use super::subject::Subject;
 use crate::{
     kit::{Dialog, describes},
+    pages::block::Commands,
     words::{
-        edit::Edit,
+        edit::{Draft, Edit},
         hooks::use_desk,
         i18n::tr,
         route::{self, Page, link},
@@ -51,7 +52,7 @@ pub(super) fn Head(props: &HeadProps) -> Html {
                 }
                 <Tools subject={subject.clone()} />
             </div>
-            <Commands subject={subject.clone()} status={props.status.clone()} />
+            <Commands<Draft, ()> block={subject.commanded()} status={props.status.clone()} />
         </header>
     }
 }
@@ -78,7 +79,7 @@ fn Tools(props: &ToolsProps) -> Html {
     let on_ask = use_callback(deleting.clone(), |_: MouseEvent, deleting| deleting.set(true));
     let on_close = use_callback(deleting.clone(), |(), deleting| deleting.set(false));
     let no_save = subject.no_save();
-    let can_save = no_save.is_none() && subject.errors() == 0;
+    let can_save = subject.can_save();
     let locked = !subject.may_edit;
     let lock = locked.then_some(tr!("may.not_edit"));
     let name = subject.draft.config.name.clone();

@@ -2,7 +2,6 @@
 
 mod activity;
 mod address;
-mod commands;
 mod data;
 mod drawing;
 mod fields;
@@ -33,11 +32,11 @@ use super::{
     verdict::Verdict,
 };
 use crate::{
+    desk::Gone,
     hooks::use_title,
     kit::state_mark,
     net::{rest, session},
     store::{DeckId, Row},
-    workbench::Gone,
 };
 
 /// Which block.

@@ -11,6 +11,7 @@ use yew::AttrValue;
 use crate::{
     editor::Remark,
     net::session,
+    pages::block::{Asks, Commanded},
     store::DeckId,
     words::{desk::Desk, edit::Draft, i18n::tr},
 };
@@ -65,6 +66,27 @@ impl Subject {
     /// Whether EN sends again and again.
     pub(super) fn is_cyclic(&self) -> bool {
         self.plan.as_ref().is_some_and(|plan| plan.trigger() != TriggerType::Once)
+    }
+
+    /// What its commands have to know.
+    pub(super) fn commanded(&self) -> Commanded {
+        let words = if self.is_cyclic() { tr!("run.en_cyclic") } else { tr!("run.en_once") };
+        Commanded {
+            id: self.id,
+            stored: self.id.stored().map(|block| (block, self.revision)),
+            plan: self.plan.clone(),
+            switch: ("EN", words),
+            repeats: self.is_cyclic(),
+            obstacle: self.obstacle(),
+            asks: Asks::of(self.may_write(), self.unsaved),
+            may_stop: self.online && session::may(Role::may_send),
+            can_save: self.can_save(),
+        }
+    }
+
+    /// Whether it can be stored now.
+    pub(super) fn can_save(&self) -> bool {
+        self.no_save().is_none() && self.errors() == 0
     }
 
     /// Why it cannot be stored now.

@@ -17,7 +17,7 @@ use super::{
     number::{number, set_number},
     part::{self, Part},
 };
-use crate::store::Shelf;
+use crate::{editor::Editable, store::Shelf};
 
 mod check;
 
@@ -83,69 +83,6 @@ pub enum Fields {
 }
 
 impl Draft {
-    /// A draft of a configuration; `revision` if it is stored.
-    pub fn new(config: SendReq, revision: Option<u64>) -> Self {
-        let mut draft = Self {
-            revision,
-            data_as: DataAs::of_layout(&config.req_layout),
-            config,
-            numbers: Shelf::default(),
-            parts: Shelf::default(),
-            auto_length: true,
-            raw_path: false,
-            refused: Vec::new(),
-        };
-        draft.auto_length = draft.words().is_none_or(|words| lengths(&words).contains(&draft.length()));
-        draft.raw_path = draft.needs_raw_path();
-        draft
-    }
-
-    /// Takes in one change.
-    pub fn edit(&mut self, edit: Edit) {
-        self.refused.clear();
-        match edit {
-            Edit::Number(field, text) => {
-                if let Ok(value) = read_number(&text) {
-                    set_number(&mut self.config, &field, value);
-                }
-                self.numbers.insert(field, text);
-            }
-            Edit::Text(field, text) => {
-                if let Some(member) = text_member(&mut self.config, &field) {
-                    *member = text;
-                }
-            }
-            Edit::Words(text) => self.type_words(text),
-            Edit::Part(part, text) => {
-                // What the other way to write the path had is older now.
-                let other = |it: &Part| it.is_of_path() && (*it == Part::Path) != (part == Part::Path);
-                self.parts.retain(|it, _| !(part.is_of_path() && other(it)));
-                self.parts.insert(part, text);
-                self.put_together();
-            }
-            Edit::RawPath(raw_path) => self.raw_path = raw_path || self.needs_raw_path(),
-            Edit::DataAs(data_as) => {
-                self.data_as = data_as;
-                self.parts.remove(&Part::Data);
-            }
-            Edit::AutoLength(auto_length) => {
-                self.auto_length = auto_length;
-                if let (true, Some(words)) = (auto_length, self.words()) {
-                    self.set_length(&words);
-                }
-            }
-            Edit::ForgetParts => self.parts = Shelf::default(),
-            Edit::Resume(on) => self.config.resume = on,
-            Edit::Channel(channel) => self.config.channel = channel,
-            Edit::Profile(profile) => self.config.profile = profile,
-        }
-    }
-
-    /// What the relay found, shown at the fields until the next change.
-    pub fn refuse(&mut self, findings: Vec<api::Finding>) {
-        self.refused = findings;
-    }
-
     /// The words, if they can be read.
     pub fn words(&self) -> Option<Vec<u16>> {
         read_words(&self.config.data_to_send).ok()
@@ -194,12 +131,6 @@ impl Draft {
     /// Whether the path cannot be written as numbers.
     pub fn needs_raw_path(&self) -> bool {
         matches!(self.fields(), Fields::Of(WordsFields { path: WordsPath::Other(_), .. }))
-    }
-
-    /// Whether storing it would change something, or cannot be tried yet.
-    pub fn differs_from(&self, stored: &SendReq) -> bool {
-        let unreadable = self.numbers.iter().any(|(_, text)| read_number(text).is_err());
-        self.config != *stored || unreadable || !self.wrong_parts().is_empty()
     }
 
     fn plain_part(&self, part: Part) -> String {
@@ -260,6 +191,84 @@ impl Draft {
         let field = Field::ManagementParam(3);
         set_number(&mut self.config, &field, bytes);
         self.numbers.remove(&field);
+    }
+}
+
+impl Editable for Draft {
+    type Config = SendReq;
+    type Edit = Edit;
+
+    fn new(config: SendReq, revision: Option<u64>) -> Self {
+        let mut draft = Self {
+            revision,
+            data_as: DataAs::of_layout(&config.req_layout),
+            config,
+            numbers: Shelf::default(),
+            parts: Shelf::default(),
+            auto_length: true,
+            raw_path: false,
+            refused: Vec::new(),
+        };
+        draft.auto_length = draft.words().is_none_or(|words| lengths(&words).contains(&draft.length()));
+        draft.raw_path = draft.needs_raw_path();
+        draft
+    }
+
+    fn config(&self) -> &SendReq {
+        &self.config
+    }
+
+    fn revision(&mut self) -> &mut Option<u64> {
+        &mut self.revision
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        self.refused.clear();
+        match edit {
+            Edit::Number(field, text) => {
+                if let Ok(value) = read_number(&text) {
+                    set_number(&mut self.config, &field, value);
+                }
+                self.numbers.insert(field, text);
+            }
+            Edit::Text(field, text) => {
+                if let Some(member) = text_member(&mut self.config, &field) {
+                    *member = text;
+                }
+            }
+            Edit::Words(text) => self.type_words(text),
+            Edit::Part(part, text) => {
+                // What the other way to write the path had is older now.
+                let other = |it: &Part| it.is_of_path() && (*it == Part::Path) != (part == Part::Path);
+                self.parts.retain(|it, _| !(part.is_of_path() && other(it)));
+                self.parts.insert(part, text);
+                self.put_together();
+            }
+            Edit::RawPath(raw_path) => self.raw_path = raw_path || self.needs_raw_path(),
+            Edit::DataAs(data_as) => {
+                self.data_as = data_as;
+                self.parts.remove(&Part::Data);
+            }
+            Edit::AutoLength(auto_length) => {
+                self.auto_length = auto_length;
+                if let (true, Some(words)) = (auto_length, self.words()) {
+                    self.set_length(&words);
+                }
+            }
+            Edit::ForgetParts => self.parts = Shelf::default(),
+            Edit::Resume(on) => self.config.resume = on,
+            Edit::Channel(channel) => self.config.channel = channel,
+            Edit::Profile(profile) => self.config.profile = profile,
+        }
+    }
+
+    fn refuse(&mut self, findings: Vec<api::Finding>) {
+        self.refused = findings;
+    }
+
+    fn differs_from(&self, stored: &SendReq) -> bool {
+        let unreadable = self.numbers.iter().any(|(_, text)| read_number(text).is_err());
+        self.config != *stored || unreadable || !self.wrong_parts().is_empty()
     }
 }
 

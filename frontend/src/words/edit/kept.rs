@@ -4,7 +4,7 @@ use cipdeck_shared::config::BlockConfig;
 use serde::{Deserialize, Serialize};
 
 use super::{data_as::DataAs, draft::Draft, number::NUMBERS, part::Part};
-use crate::editor::Keepable;
+use crate::editor::{Editable, Keepable};
 
 /// One draft: a line of JSON.
 #[derive(Serialize, Deserialize)]

@@ -4,21 +4,19 @@ use std::rc::Rc;
 
 use cipdeck_shared::{
     api::Problem,
-    config::{Block, BlockId, SendReq},
+    config::{Block, BlockId},
 };
-use gloo_net::http::Method;
 use yew::platform::spawn_local;
 
-use super::Desk;
+use super::{Desk, Gone, Intent, Local};
 use crate::{
-    net::rest::{self, Answered},
+    editor::{Editable, Kind},
+    net::rest,
     notice::Notice,
     store::DeckId,
-    words::edit::Draft,
-    workbench::{Gone, Intent},
 };
 
-impl Desk {
+impl<D: Editable, L: Local> Desk<D, L> {
     /// Stores an entry.
     pub fn save(&self, id: DeckId) {
         let desk = self.clone();
@@ -31,7 +29,7 @@ impl Desk {
     /// Stores the draft over whatever the relay has now.
     pub fn save_over(&self, id: DeckId, current: &Block) {
         let Some(mut draft) = self.draft(id) else { return };
-        draft.revision = Some(current.revision);
+        *draft.revision() = Some(current.revision);
         self.0.rows.put_stored(current.clone());
         self.keep(id, draft);
         self.save(id);
@@ -48,6 +46,11 @@ impl Desk {
         to == id
     }
 
+    /// The wish that has waited at this entry while it was stored.
+    pub fn take_wanted(&self, id: DeckId) -> Option<Intent> {
+        self.0.wanted.borrow_mut().take_if(|(wanted, _)| *wanted == id).map(|(_, intent)| intent)
+    }
+
     /// Stores an entry if there is something to store: its id and revision in the relay, or `None` and a notice.
     /// While it is being stored a second wish is ignored: two clicks must not make two blocks.
     pub(super) async fn store(&self, id: DeckId) -> Option<(BlockId, u64)> {
@@ -61,16 +64,17 @@ impl Desk {
 
     async fn store_once(&self, id: DeckId) -> Option<(BlockId, u64)> {
         self.0.notices.clear(id);
-        let draft = self.draft(id)?;
+        let mut draft = self.draft(id)?;
         let stored = match id {
             DeckId::Stored(block) if !self.is_unsaved(id) => {
                 let revision = self.0.rows.row(id)?.revision;
                 return Some((block, revision));
             }
             DeckId::Stored(block) => {
-                replace(block, draft.revision.unwrap_or_default(), draft.config.clone()).await
+                let seen = draft.revision().unwrap_or_default();
+                rest::replace(block, &draft.config().clone().with_revision(seen)).await
             }
-            DeckId::New(_) => create(&draft.config).await,
+            DeckId::New(_) => rest::create(draft.config()).await,
         };
         match stored {
             Ok(block) => {
@@ -85,7 +89,7 @@ impl Desk {
         }
     }
 
-    fn stored(&self, id: DeckId, block: Block, sent: &Draft) {
+    fn stored(&self, id: DeckId, block: Block, sent: &D) {
         let to = DeckId::Stored(block.id);
         let revision = block.revision;
         self.0.rows.put_stored(block);
@@ -94,12 +98,11 @@ impl Desk {
         self.0.drafts.discard(id);
         if let Some(newer) = newer {
             let mut newer = (*newer).clone();
-            newer.revision = Some(revision);
+            *newer.revision() = Some(revision);
             self.0.drafts.put(to, newer);
         }
         if id != to {
-            self.0.gone.borrow_mut().insert(id, Gone::Stored(to));
-            self.0.rows.remove(id);
+            self.leave(id, Gone::Stored(to));
         }
     }
 
@@ -114,13 +117,4 @@ impl Desk {
         };
         self.0.notices.put(id, notice);
     }
-}
-
-async fn create(config: &SendReq) -> Answered<Block> {
-    rest::parse(&rest::ask(Method::POST, "blocks", Some(rest::json(config)?)).await?)
-}
-
-async fn replace(id: BlockId, revision: u64, mut config: SendReq) -> Answered<Block> {
-    config.extra.insert("revision".to_owned(), revision.into());
-    rest::parse(&rest::ask(Method::PUT, &format!("blocks/{id}"), Some(rest::json(&config)?)).await?)
 }
