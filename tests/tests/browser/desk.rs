@@ -5,7 +5,7 @@ use cipdeck_tests::block;
 use cipdeck_tests::browser::{Browser, Journey, part};
 use cipdeck_tests::relay::Relay;
 use serde_json::{Value, json};
-use thirtyfour::Key;
+use thirtyfour::{By, Key};
 
 const PRODUCT_NAME: &str = "0E 03 20 01 24 01 30 07";
 
@@ -61,7 +61,11 @@ async fn what_is_copied_is_the_code_and_can_be_pasted() {
     user.see("Copied.", PATIENCE).await;
     user.shot("copied").await;
     user.go(&page(&relay)).await;
-    user.press(&part("code-text"), Key::Control + "v").await;
+    user.until("the field takes a paste", PATIENCE, async |driver| {
+        let field = driver.find(By::XPath(part("code-text"))).await.ok()?;
+        field.send_keys(Key::Control + "v").await.ok()
+    })
+    .await;
     user.see("1 block", PATIENCE).await;
     let lines = |text: &str| text.trim_end().replace("\r\n", "\n");
     assert_eq!(lines(&typed(&user).await), lines(shown.as_str().expect("a text")));
