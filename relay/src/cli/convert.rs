@@ -1,10 +1,11 @@
 //! `cipdeck convert`.
 
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use cipdeck_shared::code::{
-    Change, Dialect, Found, Language, Options, Remark, RemarkKind, export, import, tell_apart,
+    Change, Decoded, Dialect, Encoding, Found, Language, MAX_TEXT, Options, Remark, RemarkKind, decode,
+    export, import, tell_apart,
 };
 use cipdeck_shared::plan::Severity;
 use clap::Args;
@@ -45,15 +46,21 @@ impl Convert {
                 self.to
             ));
         }
-        let text = match read(&self.file) {
-            Ok(text) => text,
+        let Decoded { text, encoding } = match read(&self.file) {
+            Ok(decoded) => decoded,
             Err(error) => return Exit::usage(&format!("{}: {error}", self.file.display())),
         };
+        if encoding == Encoding::Latin1 {
+            let file = self.file.display();
+            tell(&format!(
+                "{file}: warning: it is not UTF-8: each byte is read as a character of Western Europe (Latin-1)"
+            ));
+        }
         let options = Options { language: if self.il { Language::Il } else { Language::St } };
         let mut imported = import(&text, self.from);
         if self.to.has_variables() {
             for (old, new) in tell_apart(imported.blocks.iter_mut().map(|found| &mut found.config)) {
-                eprintln!("{old}: called {new} here: another block has variables of that name");
+                tell(&format!("{old}: called {new} here: another block has variables of that name"));
             }
         }
         let converted: Vec<Converted<'_>> =
@@ -70,7 +77,7 @@ impl Convert {
         // What has no code cannot be sent: there is nothing to take home.
         let missing = converted.iter().any(|it| it.code.trim().is_empty());
         if imported.blocks.is_empty() && !self.json {
-            eprintln!("{}: no message was found", self.file.display());
+            tell(&format!("{}: no message was found", self.file.display()));
         }
         if imported.blocks.is_empty() || missing || self.strict && (unread || lost) {
             Exit::FINDINGS
@@ -82,19 +89,19 @@ impl Convert {
     fn print(&self, converted: &[Converted<'_>], remarks: &[Remark]) {
         let file = self.file.display();
         for remark in remarks.iter().chain(converted.iter().flat_map(|it| &it.found.remarks)) {
-            eprintln!("{file}:{remark}");
+            tell(&format!("{file}:{remark}"));
         }
         for it in converted {
             for change in it.changes.iter().filter(|change| change.is_loss()) {
-                eprintln!("{}: {change}", it.found.config.name());
+                tell(&format!("{}: {change}", it.found.config.name()));
             }
         }
         if converted.len() > 1 && self.to.is_whole_file() {
-            eprintln!(
+            tell(&format!(
                 "{file}: {} files of {}, one after the other: keep each by itself",
                 converted.len(),
                 self.to
-            );
+            ));
         }
         if !converted.is_empty() {
             say(joined(self.to, converted).trim_end());
@@ -125,25 +132,22 @@ impl<'a> Converted<'a> {
     }
 }
 
-fn read(file: &Path) -> std::io::Result<String> {
-    // One more than is read: then the import says that it is too long.
-    let limit = cipdeck_shared::code::MAX_TEXT as u64 + 1;
+/// A file, or stdin, and how its characters are written.
+fn read(file: &Path) -> std::io::Result<Decoded> {
+    // One more than is read: then it is known to be too long.
+    let limit = MAX_TEXT as u64 + 1;
     let mut bytes = Vec::new();
     if file.as_os_str() == "-" {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes)?;
     } else {
         std::fs::File::open(file)?.take(limit).read_to_end(&mut bytes)?;
     }
-    String::from_utf8(bytes).or_else(|error| {
-        let at = error.utf8_error().valid_up_to();
-        let cut = error.as_bytes().len() as u64 == limit;
-        let line = error.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count() + 1;
-        match String::from_utf8_lossy(error.as_bytes()) {
-            // The limit has cut a character.
-            text if cut => Ok(text.into_owned()),
-            _ => Err(std::io::Error::other(format!("line {line} is not UTF-8"))),
-        }
-    })
+    decode(&bytes).map_err(std::io::Error::other)
+}
+
+/// One line on stderr. Nobody may be reading it.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 fn machine(converted: &[Converted<'_>], remarks: &[Remark]) -> Value {
@@ -187,6 +191,7 @@ fn remark(remark: &Remark) -> Value {
 #[cfg(test)]
 mod tests {
     use super::super::act;
+    use super::MAX_TEXT;
 
     const NAME: &str = "0E 03 20 01 24 01 30 07\n";
 
@@ -218,12 +223,30 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_file_that_is_not_there_bytes_that_are_no_text_and_il_of_another_vendor_are_usage() {
+    async fn il_of_another_vendor_is_usage() {
         assert_eq!(convert(NAME, &["--to", "ccw-st", "--il"]).await, 2);
-        assert_eq!(act(&["convert", "/nowhere/at/all", "--to", "json"]).await, 2);
+    }
+
+    async fn convert_bytes(bytes: &[u8]) -> u8 {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("code.txt");
-        std::fs::write(&file, b"a\n\xFF").unwrap();
-        assert_eq!(act(&["convert", file.to_str().unwrap(), "--to", "json"]).await, 2);
+        std::fs::write(&file, bytes).unwrap();
+        act(&["convert", file.to_str().unwrap(), "--to", "json", "--strict"]).await
+    }
+
+    #[tokio::test]
+    async fn a_file_is_read_however_its_characters_are_written() {
+        let utf16: Vec<u8> = format!("\u{FEFF}{NAME}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(convert_bytes(&utf16).await, 0);
+        assert_eq!(convert_bytes(format!("\u{FEFF}{NAME}").as_bytes()).await, 0);
+        assert_eq!(convert_bytes(b"# d\xE9bit\r\n0E 03 20 01 24 01 30 07\r\n").await, 0);
+    }
+
+    #[tokio::test]
+    async fn what_is_no_text_is_usage() {
+        assert_eq!(act(&["convert", "/nowhere/at/all", "--to", "json"]).await, 2);
+        for bytes in [&b""[..], b"\n", b"PK\x03\x04", b"\xFF\xFEa", &[b' '; MAX_TEXT + 1]] {
+            assert_eq!(convert_bytes(bytes).await, 2);
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! | module | job |
 //! | --- | --- |
 //! | [`Dialect`] | which languages there are, and which kind of block each tells |
+//! | [`decode()`] | the bytes of a file → text |
 //! | [`convert()`] | a block of one kind → a block of another, with all that changed |
 //! | [`export()`] | a block → text |
 //! | [`import()`] | text → blocks, and what of it is not understood, line by line |
@@ -17,6 +18,7 @@ mod change;
 mod cli;
 mod control_expert;
 mod convert;
+mod decode;
 mod dialect;
 mod document;
 mod header;
@@ -43,6 +45,7 @@ use crate::config::BlockConfig;
 
 pub use self::change::{Change, Grade, Why};
 pub use self::convert::{Converted, convert};
+pub use self::decode::{Decoded, Encoding, NoText, decode, with_line_feeds};
 pub use self::dialect::{Dialect, Kind, Language, UnknownDialect};
 pub use self::ink::{Ink, highlight};
 pub use self::name::tell_apart;
