@@ -35,20 +35,24 @@ pub(super) fn import(text: &str) -> Imported {
         imported.remarks.push(unreadable(text, &error));
         return imported;
     }
-    for range in objects(text) {
-        let object = text.get(range.clone()).unwrap_or_default();
-        match read(object) {
+    let mut lines = Lines { text, at: 0, line: 1 };
+    for range in elements(text) {
+        let element = text.get(range.clone()).unwrap_or_default();
+        let (first, last) = (lines.at(range.start), lines.at(range.end));
+        match read(element) {
             Ok(config) => imported.blocks.push(Found {
                 config,
                 dialect: Dialect::Json,
-                lines: line(text, range.start)..line(text, range.end) + 1,
+                lines: first..last + 1,
                 remarks: Vec::new(),
             }),
             Err(words) => {
                 let words = format!("not a block: {words}");
-                let remark = Remark::error(line(text, range.start), 1, object, RemarkKind::Told(words));
-                imported.remarks.push(remark);
+                imported.remarks.push(Remark::error(first, 1, element, RemarkKind::Told(words)));
             }
+        }
+        if imported.is_full() {
+            break;
         }
     }
     if imported.blocks.is_empty() && imported.remarks.is_empty() {
@@ -58,19 +62,30 @@ pub(super) fn import(text: &str) -> Imported {
     imported
 }
 
-fn read(object: &str) -> Result<BlockConfig, String> {
-    let mut members: Map<String, Value> = serde_json::from_str(object).map_err(|error| error.to_string())?;
+fn read(element: &str) -> Result<BlockConfig, String> {
+    if !element.starts_with('{') {
+        return Err("it is no object".to_string());
+    }
+    let mut members: Map<String, Value> = serde_json::from_str(element).map_err(|error| error.to_string())?;
     members.remove("id");
     members.remove("revision");
     BlockConfig::from_members(members)
 }
 
-/// The objects of the outermost array, or the outermost object. The text is JSON.
-fn objects(text: &str) -> Vec<Range<usize>> {
-    let mut objects = Vec::new();
+/// What is in the outermost array, or all of the text if it is none. The text is JSON.
+fn elements(text: &str) -> Vec<Range<usize>> {
+    let whole = text.len() - text.trim_start().len()..text.trim_end().len();
+    if !text.trim_start().starts_with('[') {
+        return alloc::vec![whole];
+    }
+    let mut elements = Vec::new();
+    let mut add = |range: Range<usize>| {
+        let inside = text.get(range.clone()).unwrap_or_default();
+        let start = range.start + inside.len() - inside.trim_start().len();
+        elements.extend((!inside.trim().is_empty()).then(|| start..start + inside.trim().len()));
+    };
     let (mut depth, mut start) = (0_usize, 0);
     let (mut in_string, mut escaped) = (false, false);
-    let base = usize::from(text.trim_start_matches('\u{feff}').trim_start().starts_with('['));
     for (at, byte) in text.bytes().enumerate() {
         match byte {
             _ if escaped => escaped = false,
@@ -78,26 +93,39 @@ fn objects(text: &str) -> Vec<Range<usize>> {
             b'"' => in_string = !in_string,
             _ if in_string => {}
             b'{' | b'[' => {
-                if depth == base && byte == b'{' {
-                    start = at;
-                }
                 depth += 1;
+                start = if depth == 1 { at + 1 } else { start };
             }
             b'}' | b']' => {
                 depth = depth.saturating_sub(1);
-                if depth == base && byte == b'}' {
-                    objects.push(start..at + 1);
+                if depth == 0 {
+                    add(start..at);
                 }
+            }
+            b',' if depth == 1 => {
+                add(start..at);
+                start = at + 1;
             }
             _ => {}
         }
     }
-    objects
+    elements
 }
 
-/// From 1.
-fn line(text: &str, at: usize) -> usize {
-    1 + text.get(..at).unwrap_or_default().matches('\n').count()
+/// The lines of places that come one after the other.
+struct Lines<'a> {
+    text: &'a str,
+    at: usize,
+    line: usize,
+}
+
+impl Lines<'_> {
+    /// From 1; of a place that is not before the last one.
+    fn at(&mut self, at: usize) -> usize {
+        self.line += self.text.get(self.at..at).unwrap_or_default().matches('\n').count();
+        self.at = at.max(self.at);
+        self.line
+    }
 }
 
 /// With the place that the error names.
@@ -135,19 +163,25 @@ mod tests {
         let read = import(&text);
         assert_eq!(read.blocks.len(), 2);
         assert_eq!(read.blocks[0].config, read.blocks[1].config);
-        assert_eq!(
-            (read.remarks.len(), read.remarks[0].line),
-            (1, one.lines().count() + 3),
-            "{:?}",
-            read.remarks
-        );
+        let line = one.lines().count() + 3;
+        assert_eq!((read.remarks.len(), read.remarks[0].line), (1, line), "{:?}", read.remarks);
+    }
+
+    #[test]
+    fn what_is_beside_a_block_is_told() {
+        let one = export(&MsgCipGeneric::product_name("0,0").into()).text;
+        let read = import(&format!("[\n{one},\n7, \"a,b\",\n[{one}]\n]"));
+        let told: Vec<usize> = read.remarks.iter().map(|remark| remark.line).collect();
+        let line = one.lines().count() + 3;
+        assert_eq!((read.blocks.len(), told), (1, alloc::vec![line, line, line + 1]));
+        assert!(read.remarks[0].to_string().contains("it is no object"), "{}", read.remarks[0]);
     }
 
     #[test]
     fn what_is_no_json_is_told_where_it_ends_to_be() {
         let read = import("{\n \"name\": x\n}");
         assert_eq!((read.remarks[0].line, read.remarks[0].column), (2, 10), "{}", read.remarks[0]);
-        for text in ["", "7", "[]", "[7]", "\"x\"", "{", "[[{}]]"] {
+        for text in ["", " ", "7", "[]", "[7]", "\"x\"", "{", "[[{}]]"] {
             assert_eq!((import(text).blocks.len(), import(text).remarks.len()), (0, 1), "{text}");
         }
         let deep = "[".repeat(100_000);

@@ -92,6 +92,13 @@ pub struct Imported {
     pub remarks: Vec<Remark>,
 }
 
+impl Imported {
+    /// Whether there are more messages than are taken: the rest of a text need not be read.
+    const fn is_full(&self) -> bool {
+        self.blocks.len() > MAX_BLOCKS
+    }
+}
+
 /// A message in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
@@ -142,6 +149,9 @@ pub fn import(text: &str, dialect: Option<Dialect>) -> Imported {
         remark::move_down(&mut remarks, down);
         imported.blocks.append(&mut blocks);
         imported.remarks.append(&mut remarks);
+        if imported.is_full() {
+            break;
+        }
     }
     imported.blocks.sort_by_key(|found| found.lines.start);
     if let Some(first) = imported.blocks.get(MAX_BLOCKS) {

@@ -100,12 +100,36 @@ fn a_mebibyte_of_brackets_is_refused_in_time() {
         "a : ARRAY[0..1] OF ",
         "a := 1;\n",
         "m(a,b,c,d,e,f,g);\n",
+        "SEND_REQ(a,b,c,d,e);\n",
+        "{},",
+        "let a=(",
+        "connect(",
     ] {
         let text = unit.repeat((1 << 14) / unit.len());
         for dialect in Dialect::ALL.map(Some).into_iter().chain([None]) {
             let _ = import(&text, dialect);
         }
     }
+}
+
+#[test]
+fn a_short_text_that_says_much_is_not_calculated_for_ever() {
+    let sum = alloc::format!("u : CIPUCMMSend;\nx := 1{};\n", "+1".repeat(4900));
+    let bytes: String = (0..490).map(|at| alloc::format!("d[{at}] := x;")).collect();
+    let many = |call: &str| sum.clone() + &bytes + &call.repeat(100);
+    for (call, dialect) in [
+        ("m(1, c, a, t, d, 490, r);\n", Dialect::CcwSt),
+        ("SEND_REQ(ADDR('0.2.0.10.0.0.1'), 14, d, d, r);\n", Dialect::SendReqEtc100),
+        ("u(RqPath := p, ServiceCode := 1, ServiceDat := d[0], Size := 490);\n", Dialect::SysmacSt),
+    ] {
+        let imported = import(&many(call), Some(dialect));
+        let told = imported.remarks.iter().any(|remark| remark.to_string().contains("too many values"));
+        assert!(told && imported.blocks.len() == 100, "{dialect}: {:?}", imported.remarks);
+    }
+    let doubled = "a = b'0123456789abcdef'\n".to_string() + &"a = a + a + a + a\n".repeat(40);
+    let script = doubled + "p = CIPDriver('10.0.0.1')\np.generic_message(14, 1, 1, request_data=a)\n";
+    let imported = import(&script, Some(Dialect::Pycomm3));
+    assert!(errors(&imported)[0].contains("request_data is not a constant"), "{:?}", errors(&imported));
 }
 
 #[cfg(not(target_arch = "wasm32"))]

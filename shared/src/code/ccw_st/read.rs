@@ -36,6 +36,9 @@ pub(in crate::code) fn import(text: &str) -> Imported {
             remarks.extend(copied(&script, &copies, call));
             let dialect = Dialect::CcwSt;
             imported.blocks.push(Found { config: config.into(), dialect, lines, remarks });
+            if imported.is_full() {
+                return imported;
+            }
         }
         if matches!(&item.statement, Statement::Call(call) if is_copy(call, &types)) {
             copies.push(item);

@@ -27,6 +27,9 @@ pub(in super::super) fn import(text: &str) -> Imported {
         imported.remarks.push(Remark::error(line, column, excerpt, RemarkKind::Unclosed("a quote")));
     }
     for command in words.split(|word| word.ends) {
+        if imported.is_full() {
+            break;
+        }
         // A prompt, and what stands before a command in a script.
         let start =
             command.iter().take_while(|word| matches!(word.text.as_str(), "$" | "%" | "sudo")).count();

@@ -36,6 +36,10 @@ pub(super) fn words(text: &str) -> (Vec<Word>, Option<(usize, usize)>) {
         match (reader.quote, c) {
             (Some(quote), c) if c == quote => reader.quote = None,
             (Some('"') | None, '\\') => match chars.next() {
+                // Lines of Windows.
+                Some('\r') if chars.peek() == Some(&'\n') => {
+                    chars.next().into_iter().for_each(|c| reader.count(c));
+                }
                 Some('\n') => reader.count('\n'),
                 // Inside of double quotes a backslash is itself before most characters.
                 Some(next) => {
@@ -128,6 +132,7 @@ mod tests {
     fn words_are_separated_as_a_shell_does() {
         assert_eq!(texts("a  'b c'\"d\\\"e\\n\" f\\ g"), ["a", "b cd\"e\\n", "f g"]);
         assert_eq!(texts("a \\\n  b # c 'd\ne#f"), ["a", "b", "", "e#f"]);
+        assert_eq!(texts("a \\\r\n  b\r\nc"), ["a", "b", "", "c"]);
         assert_eq!(texts("a;b|c"), ["a", ";", "b", "|", "c"]);
         assert_eq!(words("a\n 'b").1, Some((2, 2)));
     }

@@ -60,8 +60,15 @@ fn sections(text: &str, dialect: Dialect) -> Imported {
             let variables = Variables { script: &script, memory: &memory, located: &located };
             let found = read_call(&variables, call, item, &mut used);
             imported.blocks.push(found);
+            if imported.is_full() {
+                return imported;
+            }
         }
         memory.step(index, item);
+    }
+    if memory.is_full() {
+        let words = "there are too many values in this text: some were left out";
+        imported.remarks.push(Remark::error(1, 1, "", RemarkKind::told(&words)));
     }
     let variables = Variables { script: &script, memory: &memory, located: &located };
     alone(&variables, &mut used, &mut imported, dialect.kind().form());

@@ -94,6 +94,9 @@ pub(super) fn import(text: &str) -> Imported {
                 }
             }
         }
+        if imported.is_full() {
+            break;
+        }
     }
     open.close(&mut imported);
     imported

@@ -58,6 +58,9 @@ fn messages(project: &Project<'_, '_>, imported: &mut Imported) {
             lines: first..last + 1,
             remarks: reading.remarks,
         });
+        if imported.is_full() {
+            return;
+        }
     }
     rest(project, imported, &used);
 }

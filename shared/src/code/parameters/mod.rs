@@ -34,6 +34,9 @@ pub(super) fn import(text: &str) -> Imported {
     let mut table = Table { imported: Imported::default(), block: None, value_at: None };
     for (number, line) in (1..).zip(text.lines()) {
         table.row(number, line);
+        if table.imported.is_full() {
+            break;
+        }
     }
     table.close();
     table.imported

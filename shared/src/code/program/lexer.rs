@@ -3,6 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use super::escape::{bytes, text};
 use crate::code::remark::{Remark, RemarkKind};
 
 /// What a program is written in.
@@ -40,6 +41,8 @@ pub(in crate::code) struct Token<'a> {
     pub(in crate::code) line: usize,
     /// In characters, from 1.
     pub(in crate::code) column: usize,
+    /// Of an opening bracket: how many tokens further the one is that closes it. 0: none does.
+    pub(in crate::code) close: usize,
 }
 
 impl Token<'_> {
@@ -59,7 +62,26 @@ pub(in crate::code) fn tokens(text: &str, language: Language) -> (Vec<Token<'_>>
             lexer.take(c.len_utf8());
         }
     }
+    pair(&mut lexer.tokens);
     (lexer.tokens, lexer.remarks)
+}
+
+/// Finds the bracket that closes each one. Without it brackets inside of brackets would be counted again and again.
+fn pair(tokens: &mut [Token<'_>]) {
+    let mut open = Vec::new();
+    for at in 0..tokens.len() {
+        match tokens.get(at).filter(|token| token.kind == Kind::Sign).map_or("", |token| token.text) {
+            "(" | "[" | "{" => open.push(at),
+            ")" | "]" | "}" => {
+                if let Some(start) = open.pop()
+                    && let Some(token) = tokens.get_mut(start)
+                {
+                    token.close = at - start;
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 struct Lexer<'a> {
@@ -82,7 +104,7 @@ impl<'a> Lexer<'a> {
         } else if language == Language::Rust && rest.starts_with("/*") {
             self.take(block_comment(rest));
         } else if let Some((prefix, quote)) = opening(rest, language) {
-            self.string(prefix, quote);
+            self.string(prefix, quote, language);
         } else if c.is_alphabetic() || c == '_' {
             let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
             self.push(Kind::Name, end);
@@ -116,31 +138,43 @@ impl<'a> Lexer<'a> {
         self.push(number.map_or(Kind::Sign, Kind::Number), end);
     }
 
-    fn string(&mut self, prefix: &'a str, quote: &'static str) {
+    fn string(&mut self, prefix: &'a str, quote: &'static str, language: Language) {
         let start = prefix.len() + quote.len();
         let body = self.rest.get(start..).unwrap_or_default();
-        let raw = prefix.contains(['r', 'R']);
-        let Some(length) = end_of(body, quote, raw) else {
+        let has = |letter: char| prefix.chars().any(|c| c.eq_ignore_ascii_case(&letter));
+        let one_line = language == Language::Python && quote.len() == 1;
+        let Some(length) = end_of(body, quote, has('r'), one_line) else {
             let excerpt = self.rest.lines().next().unwrap_or_default();
             let what = RemarkKind::Unclosed("this string");
             self.remarks.push(Remark::error(self.line, self.column, excerpt, what));
-            // It ends with its line.
-            return self.push(Kind::Text(String::new()), excerpt.len().max(1));
+            // It ends with its line. What it would have held is not known.
+            return self.push(Kind::Sign, excerpt.len().max(1));
         };
         let inside = body.get(..length).unwrap_or_default();
-        let is_bytes = prefix.contains(['b', 'B']);
-        let bytes = if raw { inside.as_bytes().to_vec() } else { unescaped(inside, is_bytes) };
-        let kind = if is_bytes {
-            Kind::Bytes(bytes)
+        let whole = start + length + quote.len();
+        // What stands in braces is made by the program.
+        if has('f') && inside.contains('{') {
+            return self.push(Kind::Sign, whole);
+        }
+        let kind = if has('b') {
+            let raw = inside.is_ascii().then(|| inside.as_bytes().to_vec());
+            (if has('r') { raw } else { bytes(inside, language) }).map(Kind::Bytes)
+        } else if has('r') {
+            Some(Kind::Text(inside.into()))
         } else {
-            Kind::Text(String::from_utf8(bytes).unwrap_or_else(|_| inside.into()))
+            text(inside, language).map(Kind::Text)
         };
-        self.push(kind, start + length + quote.len());
+        if kind.is_none() {
+            let excerpt = self.rest.get(..whole).unwrap_or_default();
+            let what = RemarkKind::Expected("a string whose characters and escapes are known".into());
+            self.remarks.push(Remark::error(self.line, self.column, excerpt, what));
+        }
+        self.push(kind.unwrap_or(Kind::Sign), whole);
     }
 
     fn push(&mut self, kind: Kind, length: usize) {
         let text = self.rest.get(..length).unwrap_or_default();
-        self.tokens.push(Token { kind, text, line: self.line, column: self.column });
+        self.tokens.push(Token { kind, text, line: self.line, column: self.column, close: 0 });
         self.take(length);
     }
 
@@ -169,7 +203,7 @@ fn opening(text: &str, language: Language) -> Option<(&str, &'static str)> {
 }
 
 /// Where the closing quotes are.
-fn end_of(body: &str, quote: &str, raw: bool) -> Option<usize> {
+fn end_of(body: &str, quote: &str, raw: bool, one_line: bool) -> Option<usize> {
     let mut escaped = false;
     for (at, c) in body.char_indices() {
         if escaped {
@@ -178,52 +212,11 @@ fn end_of(body: &str, quote: &str, raw: bool) -> Option<usize> {
             escaped = true;
         } else if body.get(at..).is_some_and(|rest| rest.starts_with(quote)) {
             return Some(at);
-        } else if c == '\n' && quote == "'" {
+        } else if c == '\n' && one_line {
             return None;
         }
     }
     None
-}
-
-/// A byte of a byte string is the byte itself; a character of a string is written in UTF-8.
-fn unescaped(text: &str, is_bytes: bool) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut chars = text.chars();
-    let push = |bytes: &mut Vec<u8>, code: u32| match u8::try_from(code) {
-        Ok(byte) if is_bytes => bytes.push(byte),
-        _ => {
-            let c = char::from_u32(code).unwrap_or(char::REPLACEMENT_CHARACTER);
-            bytes.extend_from_slice(c.encode_utf8(&mut [0; 4]).as_bytes());
-        }
-    };
-    while let Some(c) = chars.next() {
-        if c != '\\' {
-            push(&mut bytes, c.into());
-            continue;
-        }
-        match chars.next() {
-            Some('x') => push(&mut bytes, digits(&mut chars, 2)),
-            Some('u') if chars.as_str().starts_with('{') => {
-                let code =
-                    chars.as_str().get(1..).and_then(|rest| rest.split('}').next()).unwrap_or_default();
-                push(&mut bytes, u32::from_str_radix(code, 16).unwrap_or(0xFFFD));
-                chars.by_ref().find(|c| *c == '}');
-            }
-            Some('u') => push(&mut bytes, digits(&mut chars, 4)),
-            Some('U') => push(&mut bytes, digits(&mut chars, 8)),
-            Some('n') => bytes.push(b'\n'),
-            Some('r') => bytes.push(b'\r'),
-            Some('t') => bytes.push(b'\t'),
-            Some('0') => bytes.push(0),
-            Some('\n') | None => {}
-            Some(c) => push(&mut bytes, c.into()),
-        }
-    }
-    bytes
-}
-
-fn digits(chars: &mut core::str::Chars<'_>, count: usize) -> u32 {
-    chars.by_ref().take(count).fold(0, |code, c| code << 4 | c.to_digit(16).unwrap_or(0))
 }
 
 fn block_comment(text: &str) -> usize {

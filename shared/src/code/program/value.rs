@@ -1,7 +1,7 @@
 //! What an argument is worth, as far as it is constant.
 
 use alloc::collections::BTreeMap;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::lexer::{Kind, Token};
@@ -28,40 +28,51 @@ pub(in crate::code) type Names = BTreeMap<String, Value>;
 /// Parentheses inside of parentheses.
 const MAX_DEPTH: usize = 16;
 
-/// Tokens between two brackets: several times what a message has. More are no arguments, so that brackets that nobody
-/// closes cost no more than these.
-pub(in crate::code) const MAX_GROUP: usize = 8192;
+/// Bytes of a value: several times what a message has. A longer one is made by the program.
+const MAX_BYTES: usize = 2048;
 
-/// What stands between an opening bracket and its closing one, divided at commas; and how many tokens that is, with both
-/// brackets.
-pub(in crate::code) fn groups<'t, 'a>(tokens: &'t [Token<'a>]) -> (Vec<&'t [Token<'a>]>, usize) {
-    let (mut groups, mut depth, mut from) = (Vec::new(), 0_usize, 1);
-    for (at, token) in tokens.iter().enumerate() {
-        if at == MAX_GROUP {
-            return (Vec::new(), at);
+/// Constants that one program may have; of more it is not known what they are.
+const MAX_NAMES: usize = 4096;
+
+/// What a name is worth from here on; `None`: the program makes it.
+pub(in crate::code) fn remember(names: &mut Names, name: &str, value: Option<Value>) {
+    match value {
+        Some(value) if names.len() < MAX_NAMES || names.contains_key(name) => {
+            names.insert(name.to_string(), value);
         }
-        if token.kind != Kind::Sign {
-            continue;
-        }
-        match token.text {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => {
-                depth = depth.saturating_sub(1);
-                if depth == 0 {
-                    let last = tokens.get(from..at).unwrap_or_default();
-                    groups.extend(Some(last).filter(|last| !last.is_empty()));
-                    return (groups, at + 1);
-                }
-            }
-            "," if depth == 1 => {
-                groups.push(tokens.get(from..at).unwrap_or_default());
-                from = at + 1;
-            }
-            _ => {}
+        _ => {
+            names.remove(name);
         }
     }
-    groups.extend(tokens.get(from..).filter(|last| !last.is_empty()));
-    (groups, tokens.len())
+}
+
+/// What stands between an opening bracket and its closing one, divided at commas; and how many tokens that is, with both
+/// brackets. A bracket that nobody closes has nothing in it.
+pub(in crate::code) fn groups<'t, 'a>(tokens: &'t [Token<'a>]) -> (Vec<&'t [Token<'a>]>, usize) {
+    let Some(close) = tokens.first().map(|open| open.close).filter(|close| *close > 0) else {
+        return (Vec::new(), 1);
+    };
+    let inside = tokens.get(1..close).unwrap_or_default();
+    let mut groups = divided(inside, ",");
+    // Nothing at all, or nothing after the last comma.
+    if groups.last().is_some_and(|last| last.is_empty()) {
+        groups.pop();
+    }
+    (groups, (close + 1).min(tokens.len()))
+}
+
+/// Divided at a sign outside of brackets.
+fn divided<'t, 'a>(tokens: &'t [Token<'a>], sign: &str) -> Vec<&'t [Token<'a>]> {
+    let (mut parts, mut at, mut from) = (Vec::new(), 0, 0);
+    while let Some(token) = tokens.get(at) {
+        if token.is(sign) {
+            parts.push(tokens.get(from..at).unwrap_or_default());
+            from = at + 1;
+        }
+        at += token.close + 1;
+    }
+    parts.push(tokens.get(from..).unwrap_or_default());
+    parts
 }
 
 /// The worth of an argument; `None` if the program makes it.
@@ -73,12 +84,16 @@ fn worth(tokens: &[Token<'_>], names: &Names, depth: usize) -> Option<Value> {
     if depth > MAX_DEPTH {
         return None;
     }
-    let sum = addends(tokens);
+    let sum = divided(tokens, "+");
     if sum.len() > 1 {
         let mut all = Vec::new();
-        for part in sum {
+        // A sign alone has nothing before it.
+        for part in sum.into_iter().skip_while(|part| part.is_empty()) {
             let Value::Bytes(bytes) = worth(part, names, depth + 1)? else { return None };
             all.extend(bytes);
+            if all.len() > MAX_BYTES {
+                return None;
+            }
         }
         return Some(Value::Bytes(all));
     }
@@ -89,8 +104,8 @@ fn worth(tokens: &[Token<'_>], names: &Names, depth: usize) -> Option<Value> {
             Value::Real(number) => Some(Value::Real(-number)),
             _ => None,
         },
-        [open, rest @ ..] if open.is("(") => match groups(tokens) {
-            (parts, _) if parts.is_empty() && rest.len() == 1 => Some(Value::Bytes(Vec::new())),
+        [open, close] if open.is("(") && close.is(")") => Some(Value::Bytes(Vec::new())),
+        [open, ..] if open.is("(") => match groups(tokens) {
             (parts, end) if parts.len() == 1 && end == tokens.len() => {
                 worth(parts.first()?, names, depth + 1)
             }
@@ -106,12 +121,12 @@ fn worth(tokens: &[Token<'_>], names: &Names, depth: usize) -> Option<Value> {
         [only] => match &only.kind {
             Kind::Number(number) => Some(Value::Number(*number)),
             Kind::Real(number) => Some(Value::Real(*number)),
-            Kind::Text(text) => Some(Value::Text(text.clone())),
-            Kind::Bytes(bytes) => Some(Value::Bytes(bytes.clone())),
+            Kind::Text(text) if text.len() <= MAX_BYTES => Some(Value::Text(text.clone())),
+            Kind::Bytes(bytes) if bytes.len() <= MAX_BYTES => Some(Value::Bytes(bytes.clone())),
             Kind::Name if matches!(only.text, "True" | "true") => Some(Value::Bool(true)),
             Kind::Name if matches!(only.text, "False" | "false") => Some(Value::Bool(false)),
             Kind::Name => names.get(only.text).cloned(),
-            Kind::Sign => None,
+            Kind::Text(_) | Kind::Bytes(_) | Kind::Sign => None,
         },
         _ => function(tokens, names, depth),
     }
@@ -167,6 +182,7 @@ fn encoded(kind: &str, value: &Value) -> Option<Value> {
 
 /// `[1, 2]`, `[0; 3]`, perhaps as a slice.
 fn list(tokens: &[Token<'_>], names: &Names, depth: usize) -> Option<Value> {
+    tokens.first().filter(|open| open.close > 0)?;
     let (elements, end) = groups(tokens);
     let slice: String = tokens.get(end..)?.iter().map(|token| token.text).collect();
     if !slice.is_empty() && slice != "[..]" {
@@ -180,28 +196,13 @@ fn list(tokens: &[Token<'_>], names: &Names, depth: usize) -> Option<Value> {
         && let Some(at) = only.iter().position(|token| token.is(";"))
     {
         let Value::Number(count) = worth(only.get(at + 1..)?, names, depth + 1)? else { return None };
-        let count = usize::try_from(count).ok().filter(|count| *count <= 65_535)?;
+        let count = usize::try_from(count).ok().filter(|count| *count <= MAX_BYTES)?;
         return Some(Value::Bytes(alloc::vec![byte(only.get(..at)?)?; count]));
     }
-    elements.into_iter().map(byte).collect::<Option<Vec<u8>>>().map(Value::Bytes)
-}
-
-/// Divided at `+` outside of brackets.
-fn addends<'t, 'a>(tokens: &'t [Token<'a>]) -> Vec<&'t [Token<'a>]> {
-    let (mut parts, mut depth, mut from) = (Vec::new(), 0_usize, 0);
-    for (at, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::Sign) {
-        match token.text {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => depth = depth.saturating_sub(1),
-            "+" if depth == 0 && at > from => {
-                parts.push(tokens.get(from..at).unwrap_or_default());
-                from = at + 1;
-            }
-            _ => {}
-        }
+    if elements.len() > MAX_BYTES {
+        return None;
     }
-    parts.push(tokens.get(from..).unwrap_or_default());
-    parts
+    elements.into_iter().map(byte).collect::<Option<Vec<u8>>>().map(Value::Bytes)
 }
 
 /// A string literal that Python and Rust read alike: ASCII, everything else escaped for one of them.
@@ -222,7 +223,6 @@ pub(in crate::code) fn quoted(text: &str, escape: fn(char) -> String) -> String 
 mod tests {
     use super::super::lexer::{Language, tokens};
     use super::*;
-    use alloc::string::ToString;
 
     #[test]
     fn bytes_are_read_however_they_are_written() {

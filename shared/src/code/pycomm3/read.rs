@@ -6,9 +6,9 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::super::dialect::Dialect;
-use super::super::program::{Kind, Language, Names, Token, Value, groups, tokens, value};
+use super::super::program::{Kind, Language, Names, Token, Value, groups, remember, tokens, value};
 use super::super::remark::{Remark, RemarkKind};
-use super::super::{Found, Imported};
+use super::super::{Found, Imported, MAX_BLOCKS};
 use super::call::Call;
 
 /// Drivers that have `generic_message`.
@@ -61,6 +61,9 @@ pub(in super::super) fn import(text: &str) -> Imported {
     let mut script =
         Script { names, drivers: BTreeMap::new(), blocks: Vec::new(), remarks, others: Vec::new() };
     for statement in statements(&tokens) {
+        if script.blocks.len() > MAX_BLOCKS {
+            break;
+        }
         script.statement(statement);
     }
     script.finish(text)
@@ -117,7 +120,7 @@ impl Script {
                     self.drivers.insert(name.text.to_string(), driver);
                 }
             }
-            [with, ..] if with.is("with") => {}
+            [with, ..] if with.is("with") => self.forget(statement),
             [name, dot, member, sign, rest @ ..]
                 if dot.is(".") && member.is("socket_timeout") && sign.is("=") =>
             {
@@ -133,14 +136,41 @@ impl Script {
                 }
             }
             [name, sign, rest @ ..] if name.kind == Kind::Name && sign.is("=") => {
-                match value(rest, &self.names) {
-                    Some(value) => {
-                        self.names.insert(name.text.to_string(), value);
-                    }
-                    None => self.others.push(first.line),
+                let value = value(rest, &self.names);
+                self.drivers.remove(name.text);
+                if value.is_none() {
+                    self.forget(statement);
+                    self.others.push(first.line);
                 }
+                remember(&mut self.names, name.text, value);
             }
-            _ => self.others.push(first.line),
+            _ => {
+                self.forget(statement);
+                self.others.push(first.line);
+            }
+        }
+    }
+
+    /// What a statement may change is not known any more: what it assigns to, loops over, opens, or calls a method of.
+    fn forget(&mut self, statement: &[Token<'_>]) {
+        let mut at = 0;
+        let mut outside = Vec::new();
+        while let Some(token) = statement.get(at) {
+            outside.push(token);
+            at += token.close + 1;
+        }
+        let targets = outside.iter().rposition(|token| token.is("=")).unwrap_or(0);
+        let calls = statement.get(1).is_some_and(|dot| dot.is("."));
+        let parameters = statement.first().is_some_and(|word| word.is("def") || word.is("del"));
+        let mut bound = false;
+        for (index, token) in outside.into_iter().enumerate() {
+            if index < targets || bound || calls && index == 0 {
+                self.names.remove(token.text);
+            }
+            bound = (bound && !token.is("in") || token.is("for") || token.is("as")) && !token.is(":");
+        }
+        for token in statement.iter().filter(|_| parameters) {
+            self.names.remove(token.text);
         }
     }
 

@@ -122,3 +122,38 @@ fn what_is_not_constant_is_told() {
         assert!(!import(text).remarks.is_empty() || !import(text).blocks.is_empty(), "{text}");
     }
 }
+
+/// The data of the last message of a script, or what is wrong with it.
+fn data(before: &str) -> Result<alloc::string::String, alloc::string::String> {
+    let script = alloc::format!(
+        "data = b'\\x01'\np = CIPDriver('10.0.0.1')\n{before}\np.generic_message(14, 1, 1, request_data=data)\n"
+    );
+    let read = import(&script);
+    let found = read.blocks.last().unwrap();
+    let error = found.remarks.iter().find(|remark| remark.severity == crate::plan::Severity::Error);
+    error.map_or_else(|| Ok(found.config.as_msg().unwrap().req_data.clone()), |error| Err(error.to_string()))
+}
+
+#[test]
+fn what_the_script_changes_later_is_not_what_it_was_before() {
+    for same in ["", "print(data)", "n = len(data)", "p.open()", "for i in range(3):\n    print(i)"] {
+        assert_eq!(data(same), Ok("01".into()), "{same}");
+    }
+    for changed in [
+        "data = read()",
+        "data += b'2'",
+        "data[0] = 5",
+        "data.append(2)",
+        "other, data = read()",
+        "other = data = read()",
+        "for data in all:\n    pass",
+        "with open('x') as data:\n    pass",
+        "if fast: data = read()",
+        "def f(data):",
+        "data = f'{x}'",
+        "data = b'\\xZZ'",
+    ] {
+        assert!(data(changed).is_err_and(|it| it.contains("request_data is not a constant")), "{changed}");
+    }
+    assert_eq!(data("data = b'\\x0a\\012\\a'"), Ok("0a0a07".into()));
+}

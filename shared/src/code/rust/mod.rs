@@ -4,6 +4,8 @@
 //! goes through `EipContext`; an instance is a `u16`, and a port from 15 up is written with its high byte first.
 
 mod read;
+mod request;
+mod way;
 mod write;
 
 pub(super) use self::read::import;

@@ -89,3 +89,24 @@ fn programs_of_others_are_read() {
         assert!(!import(text).remarks.is_empty() || !import(text).blocks.is_empty(), "{text}");
     }
 }
+
+#[test]
+fn what_is_mutable_or_bound_again_is_not_what_it_was_before() {
+    let told = |binding: &str| {
+        let text = alloc::format!(
+            "let host = \"10.0.0.1\"; let data = [1_u8, 2]; {binding}\n\
+             let stream = connect(host);\nMessageRequest::new(14, EPath::new().with_class(1).with_instance(1), &data[..])"
+        );
+        let read = import(&text);
+        let app = read.blocks[0].config.as_msg().unwrap().req_data.clone();
+        (
+            app,
+            read.blocks[0].remarks.iter().any(|remark| remark.to_string().contains("data is not a constant")),
+        )
+    };
+    assert_eq!(told(""), ("0102".into(), false));
+    assert_eq!(told("let data = [3];"), ("03".into(), false));
+    for changed in ["let data = read();", "let mut data = vec![3];", "let (n, data) = read();"] {
+        assert_eq!(told(changed), (alloc::string::String::new(), true), "{changed}");
+    }
+}

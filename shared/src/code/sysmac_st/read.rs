@@ -40,6 +40,9 @@ pub(in crate::code) fn import(text: &str) -> Imported {
                 let (lines, remarks) = (block.reading.lines(), block.reading.remarks);
                 let dialect = Dialect::SysmacSt;
                 imported.blocks.push(Found { config: config.into(), dialect, lines, remarks });
+                if imported.is_full() {
+                    return imported;
+                }
             }
         }
         memory.step(index, item);

@@ -55,6 +55,9 @@ struct Work<'m, 's, 'a> {
 impl Work<'_, '_, '_> {
     fn integer(&mut self, expression: &Expression<'_>, hops: usize) -> Option<i128> {
         self.left = self.left.checked_sub(1)?;
+        if self.memory.is_some_and(|memory| !memory.look()) {
+            return None;
+        }
         match expression {
             Expression::Literal(Literal::Integer(value), _) => Some(*value),
             Expression::Literal(Literal::Bool(value), _) => Some(i128::from(*value)),

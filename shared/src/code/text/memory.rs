@@ -10,6 +10,10 @@ use super::syntax::{Declaration, Expression, Statement};
 /// Values that one text may set. More are left out, which [`Memory::is_full`] tells.
 const MAX_CELLS: usize = 100_000;
 
+/// Values that all calculations of one text look at: a thousand messages whose every byte is calculated. Without a limit a
+/// short text would be calculated for hours.
+const MAX_WORK: u32 = 10_000_000;
+
 /// Bytes of a key; names in programs are far shorter.
 const MAX_KEY: usize = 256;
 
@@ -34,6 +38,8 @@ pub(in crate::code) struct Memory<'s, 'a> {
     /// The first assignment of each variable in the whole text: for what is assigned only after it is used.
     first: Cells<'s, 'a>,
     last_call: Option<usize>,
+    /// Values that calculations have looked at so far.
+    looked_at: core::cell::Cell<u32>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -89,8 +95,15 @@ impl<'s, 'a> Memory<'s, 'a> {
     }
 
     /// Whether there were too many values.
-    pub(in crate::code) const fn is_full(&self) -> bool {
-        self.now.full || self.first.full
+    pub(in crate::code) fn is_full(&self) -> bool {
+        self.now.full || self.first.full || self.looked_at.get() > MAX_WORK
+    }
+
+    /// Counts one more value that a calculation looks at; whether it may.
+    pub(super) fn look(&self) -> bool {
+        let so_far = self.looked_at.get();
+        self.looked_at.set(so_far.saturating_add(1));
+        so_far < MAX_WORK
     }
 
     /// What a variable holds.
