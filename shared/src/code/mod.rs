@@ -153,6 +153,10 @@ pub fn import(text: &str, dialect: Option<Dialect>) -> Imported {
             break;
         }
     }
+    if imported.blocks.is_empty() && imported.remarks.is_empty() && !text.trim().is_empty() {
+        let what = RemarkKind::told(&"there is no message in this text");
+        imported.remarks.push(Remark::error(1, 1, text, what));
+    }
     imported.blocks.sort_by_key(|found| found.lines.start);
     if let Some(first) = imported.blocks.get(MAX_BLOCKS) {
         let (line, limit) = (first.lines.start, MAX_BLOCKS);

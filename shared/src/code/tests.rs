@@ -84,6 +84,17 @@ fn a_text_that_is_too_long_is_not_read_and_one_with_too_many_messages_in_part() 
 }
 
 #[test]
+fn a_text_without_a_message_is_not_passed_over_in_silence() {
+    for text in ["VAR", "END_IF;", ";;", "(* m(); *)", "# 0E 03", "<!-- -->", "$ "] {
+        for dialect in Dialect::ALL.map(Some).into_iter().chain([None]) {
+            let imported = import(text, dialect);
+            assert!(imported.blocks.is_empty() && !imported.remarks.is_empty(), "{dialect:?}: {text}");
+        }
+    }
+    assert_eq!(import(" \r\n", None), Imported::default());
+}
+
+#[test]
 fn a_mebibyte_of_brackets_is_refused_in_time() {
     for unit in [
         "(",
@@ -114,9 +125,9 @@ fn a_mebibyte_of_brackets_is_refused_in_time() {
 
 #[test]
 fn a_short_text_that_says_much_is_not_calculated_for_ever() {
-    let sum = alloc::format!("u : CIPUCMMSend;\nx := 1{};\n", "+1".repeat(4900));
-    let bytes: String = (0..490).map(|at| alloc::format!("d[{at}] := x;")).collect();
-    let many = |call: &str| sum.clone() + &bytes + &call.repeat(100);
+    let sum = format!("u : CIPUCMMSend;\nx := 1{};\n", "+1".repeat(4900));
+    let bytes: Vec<String> = (0..490).map(|at| format!("d[{at}] := x;")).collect();
+    let many = |call: &str| sum.clone() + &bytes.concat() + &call.repeat(100);
     for (call, dialect) in [
         ("m(1, c, a, t, d, 490, r);\n", Dialect::CcwSt),
         ("SEND_REQ(ADDR('0.2.0.10.0.0.1'), 14, d, d, r);\n", Dialect::SendReqEtc100),

@@ -124,7 +124,7 @@ fn what_is_not_constant_is_told() {
 }
 
 /// The data of the last message of a script, or what is wrong with it.
-fn data(before: &str) -> Result<alloc::string::String, alloc::string::String> {
+fn data(before: &str) -> Result<String, String> {
     let script = alloc::format!(
         "data = b'\\x01'\np = CIPDriver('10.0.0.1')\n{before}\np.generic_message(14, 1, 1, request_data=data)\n"
     );

@@ -62,22 +62,19 @@ impl<'t, 'a> Request<'_, 't, 'a> {
     /// Where it goes, and how long it has.
     fn target(&mut self, target: &mut CipTargetCfg) {
         let way = self.way;
-        match &way.host {
-            Some(host) => {
-                target.path = format!("4,{}", host.strip_suffix(":44818").unwrap_or(host));
-                for (port, link) in &way.hops {
-                    // Writing to a String cannot fail.
-                    let _ = write!(target.path, ",{port},{link}");
-                }
-                if target.path.parse::<TargetPath>().is_err() {
-                    let words = format!("{} is no path: write where it goes", target.path);
-                    self.say(Severity::Error, RemarkKind::Told(words));
-                }
+        if let Some(host) = &way.host {
+            target.path = format!("4,{}", host.strip_suffix(":44818").unwrap_or(host));
+            for (port, link) in &way.hops {
+                // Writing to a String cannot fail.
+                let _ = write!(target.path, ",{port},{link}");
             }
-            None => {
-                let words = "the address, TcpStream::connect(\"…\")".to_string();
-                self.say(Severity::Error, RemarkKind::Missing(words));
+            if target.path.parse::<TargetPath>().is_err() {
+                let words = format!("{} is no path: write where it goes", target.path);
+                self.say(Severity::Error, RemarkKind::Told(words));
             }
+        } else {
+            let words = "the address, TcpStream::connect(\"…\")".to_string();
+            self.say(Severity::Error, RemarkKind::Missing(words));
         }
         target.cip_conn_mode = way.connected.into();
         target.ucmm_timeout = way.timeouts.first().copied().unwrap_or(0);
