@@ -34,16 +34,11 @@ pub(super) fn choice(
                     <ul>{ for dialects.iter().map(radio) }</ul>
                 </div>
             }) }
-            if is_control_expert(chosen) {
+            if chosen.has_il() {
                 { languages(language, on_language) }
             }
         </fieldset>
     }
-}
-
-/// Whether a dialect is written in one of two languages.
-pub(super) const fn is_control_expert(dialect: Dialect) -> bool {
-    matches!(dialect, Dialect::SendReqEtc100 | Dialect::SendReqEtc101 | Dialect::DataExch)
 }
 
 fn languages(chosen: Language, on_language: &UseStateSetter<Language>) -> Html {

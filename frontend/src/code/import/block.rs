@@ -16,7 +16,7 @@ use super::{
     entry::{Double, Entry},
     remarks::{said, to_line},
 };
-use crate::{editor::Remark, office::kit::problem_note};
+use crate::{editor::Remark, invisible, office::kit::problem_note};
 
 #[derive(Clone, PartialEq, Properties)]
 pub(super) struct BlockCardProps {
@@ -82,7 +82,7 @@ fn head(entry: &Entry, on_deed: &Callback<Deed>, on_line: &Callback<usize>) -> H
 fn what(entry: &Entry) -> Html {
     let target = match &entry.plan {
         Some(plan) if *plan.target() == Target::BuiltIn && entry.is_without_target => tr!("found.no_target"),
-        _ => entry.config.target_text().to_owned().into(),
+        _ => invisible::shown(entry.config.target_text()).into(),
     };
     html! {
         <dl class="facts">
@@ -124,7 +124,7 @@ fn findings(entry: &Entry) -> Html {
             <div class="code-wrong" role="alert" data-test="wrong">
                 <p><b>{ tr!("found.wrong") }</b></p>
                 <ul>{ for errors.into_iter().map(line) }</ul>
-                <p class="hint">{ tr!("found.correct_in") }</p>
+                <p class="hint">{ if entry.is_without_target { tr!("found.correct_in_or_device") } else { tr!("found.correct_in") } }</p>
             </div>
         }
         if !others.is_empty() {

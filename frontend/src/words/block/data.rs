@@ -6,11 +6,14 @@ use cipdeck_shared::{config::bytes_of, plan::Field};
 use yew::prelude::*;
 
 use super::{fields::fields, subject::Subject, word_text::WordText};
-use crate::words::{
-    edit::{Edit, Fields},
-    explain,
-    grid::WordGrid,
-    i18n::tr,
+use crate::{
+    invisible,
+    words::{
+        edit::{Edit, Fields},
+        explain,
+        grid::WordGrid,
+        i18n::tr,
+    },
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -76,7 +79,7 @@ fn waiting(subject: &Subject, edit: &Callback<Edit>) -> Html {
     if waiting.is_empty() {
         return html! {};
     }
-    let texts: Vec<_> = waiting.iter().map(|(part, text)| format!("{} “{text}”", part.word())).collect();
+    let texts: Vec<_> = waiting.iter().map(|(part, text)| format!("{} “{}”", part.word(), invisible::shown(text))).collect();
     let onclick = edit.reform(|_: MouseEvent| Edit::ForgetParts);
     html! {
         <p class="warning-text" role="status" data-test="waiting-parts">
