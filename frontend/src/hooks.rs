@@ -8,7 +8,8 @@ use yew::prelude::*;
 
 use crate::{
     browser,
-    editor::Draft,
+    desk::{Desk, Local},
+    editor::{Draft, Editable},
     net::{Link, Relay, session},
     notice::Notice,
     store::{DeckId, Row, RowStore},
@@ -55,12 +56,18 @@ pub fn use_ids() -> Rc<[DeckId]> {
 #[hook]
 pub fn use_draft(id: DeckId) -> Option<Rc<Draft>> {
     let bench = use_workbench();
+    use_draft_of(&bench, id)
+}
+
+/// The draft of an entry of this desk.
+#[hook]
+pub fn use_draft_of<D: Editable, L: Local>(desk: &Desk<D, L>, id: DeckId) -> Option<Rc<D>> {
     let update = use_force_update();
-    use_effect_with((bench.clone(), id), move |(bench, id)| {
-        let watch = bench.drafts().watch(*id, Callback::from(move |()| update.force_update()));
+    use_effect_with((desk.clone(), id), move |(desk, id)| {
+        let watch = desk.drafts().watch(*id, Callback::from(move |()| update.force_update()));
         move || drop(watch)
     });
-    bench.drafts().draft(id)
+    desk.drafts().draft(id)
 }
 
 /// The connection.
@@ -92,16 +99,15 @@ pub fn use_session() -> Option<Rc<SessionView>> {
     session::view()
 }
 
-/// What is to be told about an entry.
+/// What is to be told about an entry of this desk.
 #[hook]
-pub fn use_notice(id: DeckId) -> Option<Notice> {
-    let bench = use_workbench();
+pub fn use_notice_of<D: Editable, L: Local>(desk: &Desk<D, L>, id: DeckId) -> Option<Notice> {
     let update = use_force_update();
-    use_effect_with(bench.clone(), move |bench| {
-        let watch = bench.notices().watch(Callback::from(move |()| update.force_update()));
+    use_effect_with(desk.clone(), move |desk| {
+        let watch = desk.notices().watch(Callback::from(move |()| update.force_update()));
         move || drop(watch)
     });
-    bench.notices().notice(id)
+    desk.notices().notice(id)
 }
 
 /// The targets; renders when one looks different.

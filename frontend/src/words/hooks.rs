@@ -6,9 +6,8 @@ use yew::prelude::*;
 
 use super::{desk::Desk, edit::Draft};
 use crate::{
-    hooks::{use_link_of, use_row_of},
+    hooks::{use_draft_of, use_link_of, use_row_of},
     net::Link,
-    notice::Notice,
     store::{DeckId, Row},
 };
 
@@ -48,22 +47,5 @@ pub(super) fn use_ids() -> Vec<DeckId> {
 #[hook]
 pub(super) fn use_draft(id: DeckId) -> Option<Rc<Draft>> {
     let desk = use_desk();
-    let update = use_force_update();
-    use_effect_with((desk.clone(), id), move |(desk, id)| {
-        let watch = desk.drafts().watch(*id, Callback::from(move |()| update.force_update()));
-        move || drop(watch)
-    });
-    desk.drafts().draft(id)
-}
-
-/// What is to be told about an entry.
-#[hook]
-pub(super) fn use_notice(id: DeckId) -> Option<Notice> {
-    let desk = use_desk();
-    let update = use_force_update();
-    use_effect_with(desk.clone(), move |desk| {
-        let watch = desk.notices().watch(Callback::from(move |()| update.force_update()));
-        move || drop(watch)
-    });
-    desk.notices().notice(id)
+    use_draft_of(&desk, id)
 }

@@ -29,11 +29,12 @@ use self::{
     exchange::{Exchange, is_earlier},
     form::Form,
     head::Head,
-    notice::NoticeBar,
     outcome::Outcome,
     subject::Subject,
 };
 use crate::{
+    demo::Demo,
+    editor::Draft,
     hooks::{use_draft, use_link, use_row, use_workbench},
     i18n::tr,
     kit::{state_mark, status_bits},
@@ -48,7 +49,7 @@ pub(crate) use self::{
     choices::{channel_field, profile_field},
     codes::error_words,
     commands::{Asks, Commanded, Commands},
-    notice::{choice, differences, words},
+    notice::{NoticeBar, words},
     outcome::{age_words, decode, decoded, whole},
     trouble::{acted, explain},
     written::written,
@@ -87,7 +88,7 @@ pub fn BlockPane(props: &BlockPaneProps) -> Html {
         <article class="block" aria-label={subject.draft.config.name.clone()}>
             <h1 class="unseen">{ &subject.draft.config.name }</h1>
             <Head subject={subject.clone()} status={row.status.clone()} edit={edit.clone()} />
-            <NoticeBar {id} subject={subject.clone()} />
+            <NoticeBar<Draft, Demo> {id} />
             <Form subject={subject.clone()} {edit} />
             <section class="live">
                 <div class="live-state">

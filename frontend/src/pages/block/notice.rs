@@ -9,37 +9,37 @@ use cipdeck_shared::{
 use serde::Serialize;
 use yew::prelude::*;
 
-use super::subject::Subject;
 use crate::{
-    hooks::{use_notice, use_workbench},
+    desk::{Desk, Local},
+    editor::{Editable, Kind},
+    hooks::use_notice_of,
     i18n::{PROBLEM, find, tr},
     notice::Notice,
     store::DeckId,
-    workbench::Workbench,
 };
 
 #[derive(Clone, PartialEq, Properties)]
-pub(super) struct NoticeBarProps {
-    pub(super) id: DeckId,
-    pub(super) subject: Rc<Subject>,
+pub(crate) struct NoticeBarProps {
+    pub(crate) id: DeckId,
 }
 
 /// Nothing, a problem, or a conflict.
 #[component]
-pub(super) fn NoticeBar(props: &NoticeBarProps) -> Html {
-    let bench = use_workbench();
-    let notice = use_notice(props.id);
-    let on_dismiss =
-        use_callback((bench.clone(), props.id), |_: MouseEvent, (bench, id)| bench.notices().clear(*id));
-    match notice {
+pub(crate) fn NoticeBar<D: Editable, L: Local>(props: &NoticeBarProps) -> Html {
+    let desk = use_context::<Desk<D, L>>().expect("the document provides its desk");
+    let id = props.id;
+    match use_notice_of(&desk, id) {
         None => html! {},
-        Some(Notice::Problem(problem)) => html! {
-            <div class="notice" role="alert" data-test="problem" data-code={problem.code.word().to_owned()}>
-                <p>{ words(&problem) }</p>
-                <button type="button" class="quiet-button" onclick={on_dismiss}>{ tr!("notice.dismiss") }</button>
-            </div>
-        },
-        Some(Notice::Conflict(current)) => conflict(&bench, props.id, &props.subject, &current),
+        Some(Notice::Problem(problem)) => {
+            let on_dismiss = move |_: MouseEvent| desk.notices().clear(id);
+            html! {
+                <div class="notice" role="alert" data-test="problem" data-code={problem.code.word().to_owned()}>
+                    <p>{ words(&problem) }</p>
+                    <button type="button" class="quiet-button" onclick={on_dismiss}>{ tr!("notice.dismiss") }</button>
+                </div>
+            }
+        }
+        Some(Notice::Conflict(current)) => conflict(&desk, id, &current),
     }
 }
 
@@ -56,25 +56,25 @@ pub(crate) fn words(problem: &Problem) -> String {
 }
 
 /// Both versions, member by member where they differ.
-fn conflict(bench: &Workbench, id: DeckId, mine: &Subject, current: &Rc<Block>) -> Html {
+fn conflict<D: Editable, L: Local>(desk: &Desk<D, L>, id: DeckId, current: &Rc<Block>) -> Html {
     let on_mine = {
-        let (bench, current) = (bench.clone(), current.clone());
-        move |_: MouseEvent| bench.save_over(id, &current)
+        let (desk, current) = (desk.clone(), current.clone());
+        move |_: MouseEvent| desk.save_over(id, &current)
     };
     let on_theirs = {
-        let (bench, current) = (bench.clone(), current.clone());
+        let (desk, current) = (desk.clone(), current.clone());
         move |_: MouseEvent| {
-            bench.rows().put_stored((*current).clone());
-            bench.revert(id);
+            desk.rows().put_stored((*current).clone());
+            desk.revert(id);
         }
     };
-    let rows =
-        current.config.as_msg().map(|theirs| differences(&mine.draft.config, theirs)).unwrap_or_default();
+    let both = desk.draft(id).zip(D::Config::of_block(&current.config));
+    let rows = both.map(|(mine, theirs)| differences(mine.config(), theirs)).unwrap_or_default();
     choice(current.revision, &rows, on_mine.into(), on_theirs.into())
 }
 
 /// What differs, and whose shall stay.
-pub(crate) fn choice(
+fn choice(
     revision: u64,
     rows: &[Difference],
     on_mine: Callback<MouseEvent>,
@@ -98,10 +98,10 @@ pub(crate) fn choice(
 }
 
 /// A member, and both values.
-pub(crate) type Difference = (String, String, String);
+type Difference = (String, String, String);
 
 /// Members that differ, with both values as JSON has them.
-pub(crate) fn differences<C: Serialize>(mine: &C, theirs: &C) -> Vec<Difference> {
+fn differences<C: Serialize>(mine: &C, theirs: &C) -> Vec<Difference> {
     // Through text: a second way to write JSON would cost more of the page than this costs of the time.
     let value = |config: &C| {
         let text = serde_json::to_string(config).unwrap_or_default();

@@ -9,7 +9,6 @@ mod form;
 mod head;
 mod live_words;
 mod management;
-mod notice;
 mod outcome;
 mod subject;
 mod word_text;
@@ -20,11 +19,12 @@ use cipdeck_shared::api::BlockStatus;
 use yew::prelude::*;
 
 use self::{
-    activity::activity, drawing::drawing, form::Form, head::Head, live_words::live_words, notice::NoticeBar,
-    outcome::Outcome, subject::Subject,
+    activity::activity, drawing::drawing, form::Form, head::Head, live_words::live_words, outcome::Outcome,
+    subject::Subject,
 };
 use super::{
     desk::Desk,
+    edit::Draft,
     frame::stale_note,
     hooks::{use_desk, use_draft, use_link, use_row},
     i18n::tr,
@@ -36,6 +36,7 @@ use crate::{
     hooks::use_title,
     kit::state_mark,
     net::{rest, session},
+    pages::block::NoticeBar,
     store::{DeckId, Row},
 };
 
@@ -112,7 +113,7 @@ fn Block(props: &BlockPageProps) -> Html {
         <article class="block words-block" aria-label={subject.draft.config.name.clone()}>
             <h1 class="unseen">{ &subject.draft.config.name }</h1>
             <Head subject={subject.clone()} status={row.status.clone()} edit={edit.clone()} />
-            <NoticeBar {id} subject={subject.clone()} />
+            <NoticeBar<Draft, ()> {id} />
             <Form subject={subject.clone()} {edit} />
             { live(&desk, &subject, &row) }
         </article>
