@@ -69,6 +69,16 @@ impl Process {
         self.signal(Signal::KILL);
     }
 
+    /// Stops it where it is, with its connections open: to the others it looks as if its cable were pulled.
+    pub fn freeze(&self) {
+        self.signal(Signal::STOP);
+    }
+
+    /// Lets it go on after [`Self::freeze`].
+    pub fn thaw(&self) {
+        self.signal(Signal::CONT);
+    }
+
     /// How much memory it has, in bytes.
     pub fn memory(&self) -> u64 {
         let pid = self.group.expect("it runs").as_raw_nonzero();

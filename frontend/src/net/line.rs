@@ -8,14 +8,15 @@ use std::{
 };
 
 use cipdeck_shared::api::{SessionState, WriteState};
-use gloo_timers::callback::Timeout;
+use gloo_timers::callback::{Interval, Timeout};
 use serde::Serialize;
 use yew::{Callback, platform::spawn_local};
 
 use super::{
     link::{Link, Writing},
+    pulse::{LOOK_MS, Pulse},
     reconnect::{Action, Input, Phase, Reconnect},
-    session,
+    rest, session,
     socket::Socket,
 };
 use crate::{
@@ -46,6 +47,8 @@ struct Inner<T> {
     machine: RefCell<Reconnect>,
     socket: RefCell<Option<Socket>>,
     wait: RefCell<Option<Timeout>>,
+    looks: RefCell<Option<Interval>>,
+    pulse: Cell<Pulse>,
     link: RefCell<Link>,
     writing: RefCell<Rc<Writing>>,
     is_complete: Cell<bool>,
@@ -63,6 +66,8 @@ impl<T: Carried> Line<T> {
             machine: RefCell::default(),
             socket: RefCell::default(),
             wait: RefCell::default(),
+            looks: RefCell::default(),
+            pulse: Cell::new(Pulse::new(browser::now_ms())),
             link: RefCell::new(Link::Connecting),
             writing: RefCell::default(),
             is_complete: Cell::default(),
@@ -142,20 +147,18 @@ impl<T: Carried> Line<T> {
 
     /// The relay's first word: whether it speaks the protocol that this page speaks.
     pub(crate) fn greeted(&self, theirs: u32, ours: u32) -> bool {
+        self.0.wait.take();
         if theirs != ours {
             self.show(Link::Foreign { protocol: theirs });
             return false;
         }
         self.input(Input::Hello);
         self.show(Link::Online { latency_ms: None });
+        self.0.pulse.set(Pulse::new(browser::now_ms()));
+        self.ask();
+        let line = self.clone();
+        self.0.looks.replace(Some(Interval::new(LOOK_MS, move || line.look())));
         true
-    }
-
-    /// A small request and its answer took so long.
-    pub(crate) fn measured(&self, latency_ms: f64) {
-        if self.0.machine.borrow().phase() == Phase::Online {
-            self.show(Link::Online { latency_ms: Some(latency_ms) });
-        }
     }
 
     /// What the relay says about writing now.
@@ -168,7 +171,8 @@ impl<T: Carried> Line<T> {
         let action = self.0.machine.borrow_mut().step(input);
         match action {
             Some(Action::Open) => {
-                self.0.wait.take();
+                let line = self.clone();
+                self.0.wait.replace(Some(Timeout::new(OPENING_MS, move || line.gave_up(Phase::Connecting))));
                 let line = self.clone();
                 spawn_local(async move {
                     match session::ask().await {
@@ -193,6 +197,10 @@ impl<T: Carried> Line<T> {
     }
 
     fn open(&self) {
+        // Refused, or given up, while the relay was asked who is here.
+        if self.0.machine.borrow().phase() != Phase::Connecting {
+            return;
+        }
         let (talking, closing) = (self.clone(), self.clone());
         let on_text = Callback::from(move |text: String| talking.hear(&text));
         let on_close = Callback::from(move |code| closing.closed(code));
@@ -206,6 +214,7 @@ impl<T: Carried> Line<T> {
 
     fn hear(&self, text: &str) {
         let start = browser::now_ms();
+        self.seen(start);
         T::hear(self, text, start);
         self.0.spent.emit(browser::now_ms() - start);
     }
@@ -217,11 +226,47 @@ impl<T: Carried> Line<T> {
                 self.refused(Link::SignedOut);
             }
             CLOSE_DENIED => self.refused(Link::Denied),
-            _ => {
-                self.drop_socket();
-                self.input(Input::Closed);
-            }
+            _ => self.lost(),
         }
+    }
+
+    /// Whether the relay is still there; if nobody knows, it is asked.
+    fn look(&self) {
+        let mut pulse = self.0.pulse.get();
+        let is_lost = pulse.is_lost(browser::now_ms());
+        self.0.pulse.set(pulse);
+        if is_lost { self.gave_up(Phase::Online) } else { self.ask() }
+    }
+
+    /// A small request: its answer is a sign of life, and measures how far away the relay is.
+    fn ask(&self) {
+        let line = self.clone();
+        spawn_local(async move {
+            let start = browser::now_ms();
+            if rest::is_there().await && line.0.machine.borrow().phase() == Phase::Online {
+                let now = browser::now_ms();
+                line.seen(now);
+                line.show(Link::Online { latency_ms: Some(now - start) });
+            }
+        });
+    }
+
+    fn seen(&self, now_ms: f64) {
+        let mut pulse = self.0.pulse.get();
+        pulse.seen(now_ms);
+        self.0.pulse.set(pulse);
+    }
+
+    /// The relay has been silent in this phase for longer than anybody waits.
+    fn gave_up(&self, phase: Phase) {
+        if self.0.machine.borrow().phase() == phase {
+            self.lost();
+        }
+    }
+
+    fn lost(&self) {
+        self.drop_socket();
+        self.input(Input::Closed);
     }
 
     /// Nothing of the relay is shown to whom it does not want to show it; drafts stay where they are.
@@ -233,8 +278,8 @@ impl<T: Carried> Line<T> {
     }
 
     fn drop_socket(&self) {
-        // The socket may be in the middle of calling us: it goes after it has returned.
-        let old = self.0.socket.take();
+        // One of them may be in the middle of calling us: they go after it has returned.
+        let old = (self.0.socket.take(), self.0.looks.take());
         spawn_local(async move { drop(old) });
         if self.0.is_complete.replace(false) {
             self.0.lost_ms.set(browser::now_ms());
@@ -284,3 +329,6 @@ impl<T> fmt::Debug for Line<T> {
 /// Close codes of the WebSocket: docs/WEBSOCKET.md.
 const CLOSE_SIGNED_OUT: u16 = 4401;
 const CLOSE_DENIED: u16 = 4403;
+
+/// ms for the relay to say its first word.
+const OPENING_MS: u32 = 10_000;

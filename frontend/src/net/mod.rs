@@ -3,6 +3,7 @@
 mod heard;
 mod line;
 mod link;
+mod pulse;
 mod reconnect;
 mod relay;
 pub mod rest;

@@ -6,18 +6,16 @@ use cipdeck_shared::{
     api::{ClientMessage, PROTOCOL_VERSION, Problem, WriteState},
     config::BlockId,
 };
-use gloo_timers::callback::Interval;
-use yew::{Callback, platform::spawn_local};
+use yew::Callback;
 
 use super::{
     heard::Heard,
     line::{Carried, Line},
     link::Link,
-    rest::{self, unreachable},
+    rest::unreachable,
     sequence::Sequence,
 };
 use crate::{
-    browser,
     i18n::tr,
     store::{DeckId, RowStore, Shelf, TargetStore},
 };
@@ -31,7 +29,6 @@ pub struct Deck {
     rows: RowStore,
     targets: TargetStore,
     sequence: RefCell<Sequence>,
-    probe: RefCell<Option<Interval>>,
     pending: RefCell<Shelf<String, Callback<Problem>>>,
     last_command: Cell<u64>,
 }
@@ -43,7 +40,6 @@ impl Line<Deck> {
             rows,
             targets: TargetStore::default(),
             sequence: RefCell::default(),
-            probe: RefCell::default(),
             pending: RefCell::default(),
             last_command: Cell::default(),
         };
@@ -99,7 +95,9 @@ impl Line<Deck> {
     fn take(&self, message: Heard) {
         let deck = self.carried();
         match message.kind.as_str() {
-            "hello" => self.hello(message.protocol),
+            "hello" => {
+                self.greeted(message.protocol, PROTOCOL_VERSION);
+            }
             "access" => {
                 let (window, read_only, stopped) = (message.window, message.read_only, message.stopped);
                 self.heard_access(WriteState { window, read_only, stopped });
@@ -120,25 +118,6 @@ impl Line<Deck> {
             // A message of a newer relay that we do not know is none of our business.
             _ => {}
         }
-    }
-
-    fn hello(&self, protocol: u32) {
-        if self.greeted(protocol, PROTOCOL_VERSION) {
-            self.probe();
-            let relay = self.clone();
-            self.carried().probe.replace(Some(Interval::new(PROBE_MS, move || relay.probe())));
-        }
-    }
-
-    /// Measures how long a small request takes.
-    fn probe(&self) {
-        let relay = self.clone();
-        spawn_local(async move {
-            let start = browser::now_ms();
-            if rest::health().await.is_ok() {
-                relay.measured(browser::now_ms() - start);
-            }
-        });
     }
 }
 
@@ -167,7 +146,6 @@ impl Carried for Deck {
     }
 
     fn dropped(&self) {
-        self.probe.take();
         *self.sequence.borrow_mut() = Sequence::default();
         let pending = std::mem::take(&mut *self.pending.borrow_mut());
         for refused in pending.values() {
@@ -180,6 +158,3 @@ impl Carried for Deck {
         self.targets.snapshot(Vec::new());
     }
 }
-
-/// ms between two measurements of the latency.
-const PROBE_MS: u32 = 5_000;

@@ -2,29 +2,40 @@
 
 use cipdeck_shared::{
     api::{
-        DiscoverRequest, Discovered, ExchangeView, Health, NewWindow, Problem, ProblemCode, SessionView,
+        DiscoverRequest, Discovered, ExchangeView, NewWindow, Problem, ProblemCode, SessionView,
         TargetStatus, WriteRequest, WriteTicket,
     },
     config::{Block, BlockId},
 };
-use gloo_net::http::{Method, RequestBuilder};
+use gloo_net::http::{Method, Request, RequestBuilder};
 use serde::{Serialize, de::DeserializeOwned};
 use wasm_bindgen::JsValue;
+use web_sys::AbortSignal;
 
 use super::session;
 
 /// An answer, or why there is none.
 pub type Answered<T> = Result<T, Problem>;
 
-/// The relay's health: also the way to measure how far away it is.
-pub async fn health() -> Answered<Health> {
-    parse(&ask(Method::GET, "health", None).await?)
+/// Whether the relay answers, whatever it says: also the way to measure how far away it is.
+pub async fn is_there() -> bool {
+    answer(soon("health")).await.is_ok()
 }
 
 /// Who the relay takes this browser for.
 pub async fn session() -> Answered<SessionView> {
-    parse(&ask(Method::GET, "session", None).await?)
+    parse(&answer(soon("session")).await?.text()?)
 }
+
+/// A question that is given up when nobody has answered soon: a browser has few connections to one relay, and those
+/// over which nothing will come any more would keep others waiting.
+fn soon(resource: &str) -> Result<Request, gloo_net::Error> {
+    let too_late = AbortSignal::timeout_with_u32(SOON_MS);
+    RequestBuilder::new(&address(resource)).abort_signal(Some(&too_late)).build()
+}
+
+/// ms
+const SOON_MS: u32 = 10_000;
 
 /// Ends the session.
 pub async fn sign_out() -> Answered<()> {
@@ -109,8 +120,7 @@ pub fn address(resource: &str) -> String {
 
 /// The text of an answer. One function for all: what asks differs in a few words only.
 pub async fn ask(method: Method, resource: &str, body: Option<String>) -> Answered<String> {
-    let reply = request(method, resource, body).await?;
-    if (200..300).contains(&reply.status) { Ok(reply.text) } else { Err(reply.problem()) }
+    request(method, resource, body).await?.text()
 }
 
 /// What came back, whatever it says.
@@ -125,6 +135,12 @@ pub struct Reply {
 }
 
 impl Reply {
+    /// The text of an answer, or the refusal.
+    #[expect(clippy::result_large_err, reason = "once per request, and shown to somebody")]
+    pub fn text(self) -> Answered<String> {
+        if (200..300).contains(&self.status) { Ok(self.text) } else { Err(self.problem()) }
+    }
+
     /// Read as a refusal.
     pub fn problem(&self) -> Problem {
         let status = self.status;
@@ -148,6 +164,10 @@ pub async fn send(method: Method, resource: &str, body: Option<(&str, JsValue)>)
         Some((kind, body)) => request.header("Content-Type", kind).body(body),
         None => request.build(),
     };
+    answer(request).await
+}
+
+async fn answer(request: Result<Request, gloo_net::Error>) -> Answered<Reply> {
     let response = request.map_err(no_answer)?.send().await.map_err(no_answer)?;
     let status = response.status();
     if status == SIGNED_OUT {

@@ -16,5 +16,6 @@ mod monitor;
 mod office;
 mod reconnect;
 mod routes;
+mod silence;
 mod words;
 mod write;
