@@ -9,7 +9,6 @@ use cipdeck_shared::{
 use yew::prelude::*;
 
 use super::{
-    connection::stale_note,
     i18n::tr,
     live::{Plant, Tree, use_plant},
     quality::health_mark,
@@ -19,6 +18,7 @@ use crate::{
     hooks::{use_session, use_title},
     net::session,
     office::kit::note,
+    pages::connection::stale_note,
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -38,7 +38,7 @@ pub(super) fn AllPage(props: &AllProps) -> Html {
     }
     html! { <>
         <h1>{ tr!("nav.devices") }</h1>
-        { stale_note(&plant) }
+        { stale_note(&plant.link()) }
         <section class="panel">
             <div class="scroll"><table class="listing devices" aria-label={tr!("nav.devices")}>
                 <thead><tr>

@@ -14,7 +14,6 @@
 mod all;
 mod answer;
 pub mod api;
-mod connection;
 mod device;
 mod fields;
 mod group;
@@ -30,7 +29,6 @@ use yew::prelude::*;
 
 use self::{
     all::AllPage,
-    connection::connection,
     device::{DevicePage, NewDevicePage},
     group::GroupPage,
     i18n::tr,
@@ -43,7 +41,8 @@ use crate::{
     address,
     frame_stats::FrameStats,
     hooks::{use_second, use_session},
-    net::{Link, session},
+    net::session,
+    pages::connection::connection,
     theme::ThemeToggle,
 };
 
@@ -77,8 +76,7 @@ fn Frame() -> Html {
     let writing = plant.writing();
     let view = use_session();
     let state = plant.link();
-    let waits = matches!(state, Link::Lost { .. } | Link::None { .. });
-    use_second(writing.state.window.is_some() || waits);
+    use_second(writing.state.window.is_some() || state.waits());
     html! { <>
         <header class="bar">
             <a class="brand" href="/">{ "cipdeck" }</a>
@@ -88,7 +86,7 @@ fn Frame() -> Html {
                 <li><a href="/monitor">{ tr!("nav.monitor") }</a></li>
                 <li><a href="/office">{ tr!("nav.office") }</a></li>
             </ul></nav>
-            { connection(&plant) }
+            { connection(&plant, Some(tr!("frame.no_relay"))) }
             { who(view.as_deref(), writing.state.read_only) }
             <ThemeToggle />
         </header>

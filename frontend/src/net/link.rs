@@ -39,6 +39,13 @@ pub enum Link {
     Denied,
 }
 
+impl Link {
+    /// Whether there is no relay now, and another try is due.
+    pub const fn waits(&self) -> bool {
+        matches!(self, Self::Lost { .. } | Self::None { .. })
+    }
+}
+
 /// What the relay says about writing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Writing {

@@ -7,22 +7,32 @@ use crate::{
     hooks::{use_link, use_second, use_workbench},
     i18n::tr,
     kit::Shape,
-    net::Link,
+    net::{Carried, Line, Link},
     pages::block::{age_words, whole},
 };
 
-/// Word, shape and colour of the connection; a button to try now.
+/// The connection of the workbench.
 #[component]
 pub fn Connection() -> Html {
     let bench = use_workbench();
     let link = use_link();
-    let waits = matches!(link, Link::Lost { .. } | Link::None { .. });
-    use_second(waits);
-    let can_try = waits || bench.relay().is_closed_to_us();
-    let onclick = use_callback(bench, |_: MouseEvent, bench| bench.relay().connect());
-    let (state, shape, words) = say(&link);
+    use_second(link.waits());
+    connection(bench.relay(), None)
+}
+
+/// Word, shape and colour of a connection; a button to try now. To be drawn anew every second while it waits. Without a
+/// relay there is less in some documents than in the workbench: they say so in their own words.
+pub(crate) fn connection<T: Carried>(line: &Line<T>, no_relay: Option<AttrValue>) -> Html {
+    let state = line.link();
+    let can_try = state.waits() || line.is_closed_to_us();
+    let onclick = {
+        let line = line.clone();
+        move |_: MouseEvent| line.connect()
+    };
+    let (word, shape, words) = say(&state);
+    let words = no_relay.filter(|_| matches!(state, Link::None { .. })).unwrap_or(words);
     html! {
-        <div class={classes!("connection", state)} data-test="connection" data-state={state}>
+        <div class={classes!("connection", word)} data-test="connection" data-state={word}>
             { shape.draw() }
             <span>{ words }</span>
             if can_try {
@@ -39,20 +49,32 @@ pub(super) struct StaleNoteProps {
     pub(super) stored: bool,
 }
 
-/// Says that what is shown is not live, and since when.
+/// The note of the workbench.
 #[component]
 pub(super) fn StaleNote(props: &StaleNoteProps) -> Html {
-    let lost = match use_link() {
-        Link::Lost { since_ms, .. } if props.stored => Some(since_ms),
-        _ => None,
-    };
-    use_second(lost.is_some());
-    let Some(since_ms) = lost else { return html! {} };
-    let age = age_words((browser::now_ms() - since_ms) / 1_000.0);
-    html! { <p class="warning-text" data-test="stale">{ tr!("link.stale", age = age) }</p> }
+    let link = use_link();
+    let is_lost = props.stored && matches!(link, Link::Lost { .. });
+    use_second(is_lost);
+    if is_lost {
+        stale_note(&link)
+    } else {
+        html! {}
+    }
 }
 
-pub(crate) fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
+/// Says that what is shown is not live, and since when. To be drawn anew every second while the connection is lost.
+pub(crate) fn stale_note(link: &Link) -> Html {
+    let Link::Lost { since_ms, .. } = link else { return html! {} };
+    let age = age_words((browser::now_ms() - since_ms) / 1_000.0);
+    html! {
+        <p class="warning-text" data-test="stale">
+            // Only this is read out: the age changes every second.
+            <span role="status">{ tr!("link.not_live") }</span>{ " " }{ tr!("link.stale", age = age) }
+        </p>
+    }
+}
+
+fn say(link: &Link) -> (&'static str, Shape, AttrValue) {
     match link {
         Link::Connecting => ("connecting", Shape::Half, tr!("link.connecting")),
         Link::Online { latency_ms: None } => ("online", Shape::Dot, tr!("link.online")),

@@ -12,10 +12,8 @@ use super::{
 };
 use crate::{
     access::{refused, who, write_banner},
-    browser,
     hooks::{use_second, use_session},
-    net::Link,
-    pages::{block::age_words, connection::say},
+    pages::connection::connection,
     theme::ThemeToggle,
 };
 
@@ -27,12 +25,7 @@ pub(super) fn Frame() -> Html {
     let state = use_link();
     let view = use_session();
     let writing = desk.relay().writing();
-    let waits = matches!(state, Link::Lost { .. } | Link::None { .. });
-    use_second(writing.state.window.is_some() || waits);
-    let on_try = {
-        let desk = desk.clone();
-        Callback::from(move |_: MouseEvent| desk.relay().connect())
-    };
+    use_second(writing.state.window.is_some() || state.waits());
     let closed = desk.relay().is_closed_to_us();
     html! { <>
         <header class="bar">
@@ -45,7 +38,7 @@ pub(super) fn Frame() -> Html {
                 <li><a href="/devices">{ tr!("nav.devices") }</a></li>
                 <li><a href="/office">{ tr!("nav.office") }</a></li>
             </ul></nav>
-            { connection(&state, waits || closed, on_try) }
+            { connection(desk.relay(), Some(tr!("frame.no_relay"))) }
             { who(view.as_deref(), writing.state.read_only) }
             <ThemeToggle />
         </header>
@@ -66,27 +59,4 @@ fn body(page: Page) -> Html {
             </div>
         },
     }
-}
-
-/// Word, shape and colour of the connection; a button to try now.
-fn connection(state: &Link, can_try: bool, onclick: Callback<MouseEvent>) -> Html {
-    let (word, shape, words) = say(state);
-    // Without a relay blocks can be made here, but not run, unlike in the workbench.
-    let words = if let Link::None { .. } = state { tr!("frame.no_relay") } else { words };
-    html! {
-        <div class={classes!("connection", word)} data-test="connection" data-state={word}>
-            { shape.draw() }
-            <span>{ words }</span>
-            if can_try {
-                <button type="button" class="quiet-button" {onclick}>{ tr!("link.try_now") }</button>
-            }
-        </div>
-    }
-}
-
-/// Says that what is shown is not live, and since when.
-pub(super) fn stale_note(state: &Link) -> Html {
-    let Link::Lost { since_ms, .. } = state else { return html! {} };
-    let age = age_words((browser::now_ms() - since_ms) / 1_000.0);
-    html! { <p class="warning-text" role="status" data-test="stale">{ tr!("link.stale", age = age) }</p> }
 }

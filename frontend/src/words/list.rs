@@ -5,7 +5,6 @@ use web_sys::HtmlInputElement;
 use yew::prelude::*;
 
 use super::{
-    frame::stale_note,
     hooks::{use_desk, use_draft, use_ids, use_link, use_row},
     i18n::tr,
     route::{Page, link},
@@ -16,7 +15,7 @@ use crate::{
     hooks::{use_session, use_title},
     kit::state_mark,
     net::{Link, session},
-    pages::block::age_words,
+    pages::{block::age_words, connection::stale_note},
     store::DeckId,
 };
 

@@ -19,7 +19,6 @@ use self::{
     writes::Writes,
 };
 use super::{
-    connection::stale_note,
     i18n::tr,
     live::{use_device_status, use_plant, use_tree},
     route::{self, Page},
@@ -28,6 +27,7 @@ use crate::{
     hooks::{use_session, use_title},
     net::session,
     office::kit::{Confirm, note},
+    pages::connection::stale_note,
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -67,7 +67,7 @@ pub(super) fn DevicePage(props: &DevicePageProps) -> Html {
                 </span>
             }
         </div>
-        { stale_note(&plant) }
+        { stale_note(&plant.link()) }
         <div class="cards">
             { state(&device, status.as_deref(), plant.is_live()) }
             <Groups {tree} device={device.id} />

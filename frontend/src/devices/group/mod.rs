@@ -26,7 +26,6 @@ use self::{
     asked::Asked, dialogs::dialog, head::Head, lines::Lines, row::Common, table::Variables, tools::tools,
 };
 use super::{
-    connection::stale_note,
     i18n::tr,
     live::{use_plant, use_tree, use_watched},
     trend::TrendPanel,
@@ -38,6 +37,7 @@ use crate::{
         fetch::use_fetched,
         kit::{note, waiting},
     },
+    pages::connection::stale_note,
 };
 
 #[derive(Clone, PartialEq, Properties)]
@@ -91,7 +91,7 @@ pub(super) fn GroupPage(props: &GroupPageProps) -> Html {
     html! {
         <div class="group-page">
             <Head group={group.clone()} device={device.clone()} ask={ask.clone()} />
-            { stale_note(&plant) }
+            { stale_note(&plant.link()) }
             { tools(&group, &lines, &common, &filter, &plant) }
             { waiting(&fetched) }
             if fetched.data.is_some() && is_empty {

@@ -25,7 +25,6 @@ use self::{
 use super::{
     desk::Desk,
     edit::Draft,
-    frame::stale_note,
     hooks::{use_desk, use_draft, use_link, use_row},
     i18n::tr,
     route::{self, Page, link, redirect},
@@ -36,7 +35,7 @@ use crate::{
     hooks::use_title,
     kit::state_mark,
     net::{rest, session},
-    pages::block::NoticeBar,
+    pages::{block::NoticeBar, connection::stale_note},
     store::{DeckId, Row},
 };
 
