@@ -1,5 +1,6 @@
-//! While the write window is open everybody sees it.
+//! While the write window is open everybody sees it; who can open it.
 
+use cipdeck_shared::api::{Role, WriteState};
 use yew::{platform::spawn_local, prelude::*};
 
 use crate::{
@@ -36,6 +37,16 @@ pub fn write_banner(writing: &Writing) -> Html {
                 <button type="button" class="button" {onclick} data-test="window-close">{ tr!("writing.close") }</button>
             }
         </section>
+    }
+}
+
+/// Why the caller cannot open it.
+pub fn window_obstacle(state: &WriteState) -> Option<AttrValue> {
+    match &state.stopped {
+        _ if state.read_only => Some(tr!("writing.read_only")),
+        Some(why) => Some(tr!("writing.stopped", why = why)),
+        None if !session::is_person() || !session::may(Role::may_write) => Some(tr!("window.not_you")),
+        None => None,
     }
 }
 

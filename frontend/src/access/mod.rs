@@ -6,7 +6,7 @@ mod refused;
 mod who;
 
 pub use self::{
-    banner::write_banner,
+    banner::{window_obstacle, write_banner},
     follow::use_writing,
     refused::{refused, sign_in_link},
     who::{role_word, who},

@@ -1,11 +1,11 @@
 //! Offers to open the write window, to those who may.
 
-use cipdeck_shared::api::Role;
 use yew::prelude::*;
 
 use crate::{
+    access::window_obstacle,
     devices::{answer::problem_note, i18n::tr, live::use_plant},
-    net::{rest, session},
+    net::rest,
     office::{check, fetch::use_action, kit::Entry},
 };
 
@@ -21,14 +21,7 @@ pub(super) fn OpenWindow(props: &OpenWindowProps) -> Html {
     let action = use_action();
     let minutes = use_state(|| "15".to_owned());
     let wanted = check::number(&minutes, 1, 60);
-    let obstacle = match &plant.writing().state {
-        state if state.read_only => Some(tr!("writing.read_only")),
-        state if state.stopped.is_some() => {
-            Some(tr!("writing.stopped", why = state.stopped.as_deref().unwrap_or_default()))
-        }
-        _ if !session::is_person() || !session::may(Role::may_write) => Some(tr!("window.not_you")),
-        _ => None,
-    };
+    let obstacle = window_obstacle(&plant.writing().state);
     let onsubmit = {
         let (action, wanted) = (action.clone(), wanted.clone());
         move |event: SubmitEvent| {

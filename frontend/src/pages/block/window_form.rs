@@ -1,13 +1,13 @@
 //! Offers to open the write window, to those who may.
 
-use cipdeck_shared::api::Role;
 use web_sys::HtmlInputElement;
 use yew::{platform::spawn_local, prelude::*};
 
 use super::notice::words;
 use crate::{
+    access::window_obstacle,
     i18n::tr,
-    net::{Relay, rest, session},
+    net::{Relay, rest},
 };
 
 /// Minutes and a button, or why not. What becomes of it comes from the relay, as everybody hears it; a refusal goes to
@@ -19,14 +19,7 @@ pub(super) fn window_form(
     on_cancel: Callback<MouseEvent>,
 ) -> Html {
     let writing = relay.writing();
-    let obstacle = match &writing.state {
-        state if state.read_only => Some(tr!("writing.read_only")),
-        state if state.stopped.is_some() => {
-            Some(tr!("writing.stopped", why = state.stopped.as_deref().unwrap_or_default()))
-        }
-        _ if !session::is_person() || !session::may(Role::may_write) => Some(tr!("window.not_you")),
-        _ => None,
-    };
+    let obstacle = window_obstacle(&writing.state);
     let onsubmit = {
         let (node, refused) = (node.clone(), refused.clone());
         move |event: SubmitEvent| {
