@@ -169,6 +169,8 @@ impl Message<'_> {
             (!whole, Grade::Request, Why::NoRoute),
         ];
         let path = &self.config.target_cfg.path;
+        // The same text again says nothing of where it goes.
+        let to = if to == path { "" } else { to };
         let changes = reasons.into_iter().filter(|(is_so, ..)| *is_so);
         changes.map(|(_, grade, why)| Change::new(&"TargetCfg.Path", path, &to, grade, why)).collect()
     }

@@ -51,8 +51,17 @@ fn changes(message: &Message<'_>, name: &str, request: &Fields, reply: &Fields) 
     }
     let whole = message.path.hops() <= CONTROLLER_HOPS;
     changes.extend(message.renamed(name));
-    changes.extend(message.path_changes(&message.config.target_cfg.path, whole));
+    changes.extend(message.path_changes(&reached(message), whole));
     changes
+}
+
+/// The path as a controller goes it, whatever TCP port it has.
+fn reached(message: &Message<'_>) -> String {
+    let path = &message.config.target_cfg.path;
+    message.endpoint().map_or_else(
+        || path.clone(),
+        |endpoint| path.replacen(&endpoint.to_string(), &endpoint.host.to_string(), 1),
+    )
 }
 
 struct Section<'m> {

@@ -97,6 +97,10 @@ impl Translator {
             self.note(number, trimmed, "a label");
             return self.line(number, rest);
         }
+        if let Some(what) = of_pl7(trimmed) {
+            self.note(number, trimmed, what);
+            return String::new();
+        }
         if !is_operator(trimmed) {
             return line.to_string();
         }
@@ -136,6 +140,18 @@ impl Translator {
     fn note(&mut self, line: usize, excerpt: &str, what: &str) {
         self.remarks.push(Remark::note(line, 1, excerpt, RemarkKind::NoEffect(what.to_string())));
     }
+}
+
+/// What programs that come from PL7 have besides: `!` before a sentence, `%L10:`, `RESET %M10;`.
+fn of_pl7(line: &str) -> Option<&'static str> {
+    let label = line.strip_prefix("%L").and_then(|label| label.strip_suffix(':'));
+    if line == "!" || label.is_some_and(|label| label.bytes().all(|byte| byte.is_ascii_digit())) {
+        return Some("a label");
+    }
+    let (word, operand) = line.split_once(char::is_whitespace)?;
+    let is_bit = matches!(word.to_ascii_uppercase().as_str(), "SET" | "RESET");
+    let is_operand = operand.trim_start().starts_with(|c: char| c == '%' || c.is_alphabetic());
+    (is_bit && is_operand && !operand.contains(":=")).then_some("the program's way")
 }
 
 fn is_name(text: &str) -> bool {
@@ -184,6 +200,8 @@ mod tests {
             ]
         );
         assert_eq!(st.lines().count(), il.lines().count());
+        let (pl7, told) = as_st("!\n%L10:\nRESET %M10;\nset Lamp ;\nSET := 1;\nSET (x);");
+        assert_eq!((pl7.trim_start(), told.len()), ("SET := 1;\nSET (x);", 4));
         let noted: Vec<usize> = remarks.iter().map(|remark| remark.line).collect();
         assert_eq!(noted, [6, 8, 9]);
     }

@@ -36,7 +36,7 @@ fn changes(message: &Message<'_>) -> Vec<Change> {
     changes.extend(message.without_members());
     if app.instance > MAX_TARGET_OBJECT {
         let why = Why::NumberLimit(MAX_TARGET_OBJECT);
-        changes.push(Change::new(&"AppCfg.Instance", &app.instance, &app.instance, Grade::Request, why));
+        changes.push(Change::new(&"AppCfg.Instance", &app.instance, &"", Grade::Request, why));
     }
     if let Some(endpoint) = message.endpoint().filter(|endpoint| endpoint.has_unusual_port()) {
         let to = connection_path(message);
