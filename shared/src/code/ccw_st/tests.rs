@@ -223,10 +223,11 @@ MSG_CIPGENERIC_2(IN := go, CtrlCfg := c, AppCfg := a, TargetCfg := t, ReqData :=
 
 #[test]
 fn what_would_reach_another_device_does_not_run() {
-    let config = MsgCipGeneric::product_name("4,10.0.0.1:44820");
-    assert!(
-        export(&config.into()).text.contains("product_name(FALSE AND product_name_IN, product_name_Ctrl,")
-    );
+    let code = export(&MsgCipGeneric::product_name("4,10.0.0.1:44820,1,0").into());
+    assert!(code.text.contains("product_name(FALSE AND product_name_IN, product_name_Ctrl,"));
+    let losses: Vec<String> = code.losses().map(ToString::to_string).collect();
+    let path = "TargetCfg.Path 4,10.0.0.1:44820,1,0 -> 4,10.0.0.1,1,0 (request): it always goes to TCP port 44818 there";
+    assert_eq!(losses, [path]);
 }
 
 #[test]

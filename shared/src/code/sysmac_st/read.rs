@@ -1,14 +1,14 @@
 //! Statements → blocks.
 
 use alloc::collections::{BTreeMap, BTreeSet};
-use alloc::string::ToString;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::block::{Block, Types};
 use super::instruction::{Instruction, Site};
 use crate::code::dialect::Dialect;
 use crate::code::remark::{Remark, RemarkKind};
-use crate::code::text::{Call, Expression, Memory, Reading, Script, Statement, left_over};
+use crate::code::text::{Call, Expression, Item, Memory, Reading, Script, Statement, left_over};
 use crate::code::{Found, Imported};
 use crate::plan::Severity;
 
@@ -67,7 +67,7 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
 }
 
 fn sites<'s, 'a>(script: &'s Script<'a>, types: &Types<'_, '_>) -> Vec<Site<'s, 'a>> {
-    let site = |(item, it): (usize, &'s crate::code::text::Item<'a>)| {
+    let site = |(item, it): (usize, &'s Item<'a>)| {
         let Statement::Call(call) = &it.statement else { return None };
         let declared = types.get(&call.name.root.to_lowercase());
         let instruction = match declared {
@@ -80,7 +80,7 @@ fn sites<'s, 'a>(script: &'s Script<'a>, types: &Types<'_, '_>) -> Vec<Site<'s, 
 }
 
 /// The variables of a call, and its instance.
-fn variables(call: &Call<'_>) -> Vec<alloc::string::String> {
+fn variables(call: &Call<'_>) -> Vec<String> {
     let of = call.arguments.iter().filter_map(|argument| match &argument.value {
         Some(Expression::Reference(reference)) => Some(reference.root.to_lowercase()),
         _ => None,
