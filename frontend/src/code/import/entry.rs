@@ -94,11 +94,16 @@ fn entry(place: Place, file: Option<&str>, found: &Found, pick: &Pick, target: &
     if is_without_target && !target.trim().is_empty() {
         aim(&mut config, target.trim());
     }
+    let mut found = found.clone();
+    if config.target_text() != found.config.target_text() {
+        // Somebody has said where it goes.
+        found.remarks.retain(|remark| !tells_no_device(&remark.what));
+    }
     let (plan, findings) = MessagePlan::check(&config);
     Entry {
         place,
         file: file.map(str::to_owned),
-        found: found.clone(),
+        found,
         pick: pick.clone(),
         config,
         plan,
@@ -196,6 +201,16 @@ mod tests {
         assert_eq!(paths(" 192.168.1.5 "), ["4,192.168.1.5", "0,0"]);
         assert_eq!(paths("4,192.168.1.5,1,0"), ["4,192.168.1.5,1,0", "0,0"]);
         assert_eq!(paths(""), ["0,0", "0,0"]);
+    }
+
+    #[test]
+    fn nothing_wants_a_device_that_somebody_has_named() {
+        let blocks = vec![found(named("a"), Some(RemarkKind::NoDevice))];
+        let said = |target: &str| {
+            let desk = desk(blocks.clone(), vec![Deed::Target(target.to_owned())]);
+            entries(&desk, &BTreeSet::new()).iter().map(|entry| entry.found.remarks.len()).sum::<usize>()
+        };
+        assert_eq!((said(""), said("192.168.1.5")), (1, 0));
     }
 
     #[test]
