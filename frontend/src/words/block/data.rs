@@ -79,7 +79,8 @@ fn waiting(subject: &Subject, edit: &Callback<Edit>) -> Html {
     if waiting.is_empty() {
         return html! {};
     }
-    let texts: Vec<_> = waiting.iter().map(|(part, text)| format!("{} “{}”", part.word(), invisible::shown(text))).collect();
+    let texts: Vec<_> =
+        waiting.iter().map(|(part, text)| format!("{} “{}”", part.word(), invisible::shown(text))).collect();
     let onclick = edit.reform(|_: MouseEvent| Edit::ForgetParts);
     html! {
         <p class="warning-text" role="status" data-test="waiting-parts">
