@@ -103,8 +103,9 @@ impl Convert {
                 self.to
             ));
         }
-        if !converted.is_empty() {
-            say(joined(self.to, converted).trim_end());
+        let text = joined(self.to, converted);
+        if !text.trim().is_empty() {
+            say(text.trim_end());
         }
     }
 }
@@ -191,7 +192,7 @@ fn remark(remark: &Remark) -> Value {
 #[cfg(test)]
 mod tests {
     use super::super::act;
-    use super::MAX_TEXT;
+    use super::{Dialect, MAX_TEXT};
 
     const NAME: &str = "0E 03 20 01 24 01 30 07\n";
 
@@ -220,6 +221,16 @@ mod tests {
         let wide = "0E 04 21 00 01 00 24 01 30 07";
         assert_eq!(convert(wide, &["--to", "json"]).await, 0);
         assert_eq!(convert(wide, &["--to", "json", "--strict"]).await, 2);
+    }
+
+    #[tokio::test]
+    async fn a_block_with_errors_has_no_code_and_json_keeps_it() {
+        let wrong =
+            r#"{"name":"x","AppCfg":{"Service":300,"Class":1,"Instance":1},"TargetCfg":{"Path":"0,0"}}"#;
+        for dialect in Dialect::ALL {
+            let expected = if dialect == Dialect::Json { 0 } else { 2 };
+            assert_eq!(convert(wrong, &["--to", dialect.name()]).await, expected, "{dialect}");
+        }
     }
 
     #[tokio::test]

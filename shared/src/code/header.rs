@@ -6,8 +6,11 @@ use core::fmt::Write;
 use super::change::Change;
 use super::dialect::Dialect;
 
-/// The text with a comment for each loss.
+/// The text with a comment for each loss. Where there is no code, comments alone would look like some.
 pub(super) fn with_losses(dialect: Dialect, text: String, changes: &[Change]) -> String {
+    if text.is_empty() {
+        return text;
+    }
     let mut losses = String::new();
     for change in changes.iter().filter(|change| change.is_loss()) {
         let mut words = String::new();

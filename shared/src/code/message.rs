@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use crate::config::{
     BlockConfig, Channel, Endpoint, Extra, Host, MsgCipGeneric, Profile, Target, TargetPath,
 };
-use crate::plan::MessagePlan;
+use crate::plan::{MessagePlan, Severity};
 use crate::table;
 
 use super::Code;
@@ -210,9 +210,12 @@ pub(super) fn ours_alone<const N: usize>(ours: &Ours<'_, N>) -> Vec<Change> {
     changes
 }
 
-/// What would be sent is not known, so nothing is written.
+/// What would be sent is not known, so nothing is written. The first error is told.
 pub(super) fn not_sendable(block: &BlockConfig) -> Code {
-    let change = Change::new(&"name", &block.name(), &"", Grade::Request, Why::NotSendable);
+    let findings = MessagePlan::of(block).1;
+    let error = findings.iter().find(|finding| finding.severity == Severity::Error);
+    let error = error.map_or_else(String::new, |it| format!("{}: {}", it.field, it.rule));
+    let change = Change::new(&"request", &error, &"", Grade::Request, Why::NotSendable);
     Code { text: String::new(), changes: vec![change] }
 }
 

@@ -70,7 +70,7 @@ pub struct Options {
 /// An exported block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Code {
-    /// What is copied into the editor.
+    /// What is copied into the editor. Empty: the block has errors, and what it would send is not known.
     pub text: String,
     /// Everything that the text does not say as the block does. Empty: it says all of it.
     pub changes: Vec<Change>,
@@ -128,7 +128,9 @@ pub fn export(block: &BlockConfig, to: Dialect, options: &Options) -> Code {
         Dialect::Cli => cli::export(&config),
         Dialect::Hex => hex::export(&config),
     };
-    changes.extend(further);
+    // An error of the block is told once, as it was before the conversion.
+    let is_told = changes.iter().any(|change| change.why == Why::NotSendable);
+    changes.extend(further.into_iter().filter(|change| !is_told || change.why != Why::NotSendable));
     Code { text: header::with_losses(to, text, &changes), changes }
 }
 
