@@ -256,7 +256,8 @@ mod tests {
     #[tokio::test]
     async fn what_is_no_text_is_usage() {
         assert_eq!(act(&["convert", "/nowhere/at/all", "--to", "json"]).await, 2);
-        for bytes in [&b""[..], b"\n", b"PK\x03\x04", b"\xFF\xFEa", &[b' '; MAX_TEXT + 1]] {
+        let long = b" ".repeat(MAX_TEXT + 1);
+        for bytes in [&b""[..], b"\n", b"PK\x03\x04", b"\xFF\xFEa", &long] {
             assert_eq!(convert_bytes(bytes).await, 2);
         }
     }

@@ -4,7 +4,7 @@ use super::{export, import};
 use crate::code::{Found, Grade, Why};
 use crate::config::{BlockConfig, MsgCipGeneric, TargetPath};
 use crate::plan::MessagePlan;
-use alloc::string::ToString;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 fn config(path: &str) -> MsgCipGeneric {
@@ -107,6 +107,6 @@ fn what_is_mutable_or_bound_again_is_not_what_it_was_before() {
     assert_eq!(told(""), ("0102".into(), false));
     assert_eq!(told("let data = [3];"), ("03".into(), false));
     for changed in ["let data = read();", "let mut data = vec![3];", "let (n, data) = read();"] {
-        assert_eq!(told(changed), (alloc::string::String::new(), true), "{changed}");
+        assert_eq!(told(changed), (String::new(), true), "{changed}");
     }
 }
