@@ -5,9 +5,9 @@ use cipdeck_shared::{
     config::{BlockConfig, BlockId},
 };
 use gloo_net::http::Method;
-use js_sys::Uint8Array;
 use serde::Deserialize;
 
+use super::project::Source;
 use crate::net::rest::{self, Answered};
 
 /// What is needed of a stored block. Reading all of it would be 4 kB of the document.
@@ -24,10 +24,23 @@ pub(super) async fn save(config: &BlockConfig) -> Answered<Stored> {
     rest::parse(&rest::ask(Method::POST, "blocks", Some(rest::json(config)?)).await?)
 }
 
-/// Everything in a zip, or what would come of it.
-pub(super) async fn import_project(zip: &Uint8Array, is_preview: bool) -> Answered<ProjectImport> {
-    let resource = if is_preview { "project?preview=true" } else { "project" };
-    let reply = rest::send(Method::POST, resource, Some((ZIP, zip.clone().into()))).await?;
+/// What would come of a project.
+pub(super) async fn look(source: &Source) -> Answered<ProjectImport> {
+    project(source, "?preview=true").await
+}
+
+/// Takes a project in that was looked at.
+pub(super) async fn take(source: &Source, looked: &ProjectImport) -> Answered<ProjectImport> {
+    let seen = looked.seen.as_ref().map(|seen| format!("?seen={seen}"));
+    project(source, &seen.unwrap_or_default()).await
+}
+
+async fn project(source: &Source, query: &str) -> Answered<ProjectImport> {
+    let (resource, body) = match source {
+        Source::Zip(zip) => ("project", Some((ZIP, zip.clone().into()))),
+        Source::Folder => ("project/folder", None),
+    };
+    let reply = rest::send(Method::POST, &format!("{resource}{query}"), body).await?;
     match reply.status {
         200..300 => rest::parse(&reply.text),
         _ => Err(reply.problem()),

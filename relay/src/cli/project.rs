@@ -69,7 +69,9 @@ fn check(folder: &Path, json: bool) -> Result<Exit, Exit> {
         }
         let groups: usize = read.project.targets.values().map(|target| target.groups.len()).sum();
         let (blocks, targets) = (read.project.blocks.len(), read.project.targets.len());
-        say(&format!("{blocks} blocks, {targets} targets, {groups} groups: {errors} errors"));
+        let counts = [(blocks, "block"), (targets, "target"), (groups, "group")];
+        let counts = counts.map(|(count, what)| counted(count, what)).join(", ");
+        say(&format!("{counts}: {}", counted(errors, "error")));
     }
     Ok(if errors == 0 { Exit::SUCCESS } else { Exit::FINDINGS })
 }
@@ -110,6 +112,11 @@ fn wrong(findings: &[Finding]) -> Result<(), Exit> {
     let is_unreadable =
         |finding: &Finding| finding.severity == Severity::Error && finding.rule == project::FILE_RULE;
     if findings.iter().any(is_unreadable) { Err(Exit::FINDINGS) } else { Ok(()) }
+}
+
+/// `1 block`, `2 blocks`
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn line(finding: &Finding) -> String {

@@ -9,7 +9,7 @@ use rusqlite::Connection;
 
 use super::difference::{difference, together};
 use super::variables::variables;
-use super::{Touched, target_of};
+use super::{Outcome, Touched, target_of};
 use crate::draft::normalised;
 use crate::plant::{MAX_DEVICES, MAX_GROUPS};
 use crate::store::{
@@ -24,14 +24,6 @@ pub(crate) enum How {
     Folder { was_joined: bool },
     /// They come from elsewhere: names count, and what is not among them stays.
     Import,
-}
-
-/// What has become of everything.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Outcome {
-    pub(crate) parts: Vec<ProjectPart>,
-    /// Everything that was changed, created or removed.
-    pub(crate) touched: Vec<Touched>,
 }
 
 /// Makes what is stored what the files say, or as much of it as they speak of.
@@ -290,9 +282,10 @@ impl Merge<'_> {
 
 /// What is there and what comes fits together.
 fn at_most(max: usize, there: usize, of_what: &str) -> Result<(), StoreError> {
-    let words =
-        || StoreError::TooMany(format!("there would be {there} {of_what}, and no more than {max} fit"));
-    if there > max { Err(words()) } else { Ok(()) }
+    if there <= max {
+        return Ok(());
+    }
+    Err(StoreError::TooMany(format!("there would be {there} {of_what}, and no more than {max} fit")))
 }
 
 /// What none of the files is.

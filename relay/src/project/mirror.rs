@@ -6,26 +6,15 @@ use cipdeck_shared::config::project::{
     self as files, PROJECT_HEAD, Project, block_path, file_name, free_file_name, group_path, is_portable,
     target_path,
 };
-use cipdeck_shared::config::{BlockId, DeviceId, GroupId};
 use rusqlite::{Connection, Transaction};
 
 use super::journal::name_of_a_change;
 use super::wanted::{Wanted, in_the_order_of, stem};
-use super::{FilesError, Folder, How, Outcome, group_of, merge, target_of};
+use super::{FilesError, Folder, How, Outcome, Touched, group_of, merge, target_of};
 use crate::draft::normalised;
 use crate::store::{
     Scope, StoreError, StoredBlock, StoredGroup, StoredTarget, Table, load_project, put_change, put_head,
 };
-
-/// What a change is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Touched {
-    Block(BlockId),
-    /// Itself, and groups that it has got.
-    Device(DeviceId),
-    /// With its variables.
-    Group(GroupId),
-}
 
 /// The folder, and which file is whose.
 #[derive(Debug)]

@@ -313,7 +313,7 @@ async fn a_project_goes_from_one_relay_to_another() {
     choose(&user, "project-file", &[text]).await;
     user.find("that it is no zip", &part("no-zip"), PATIENCE).await;
     choose(&user, "project-file", std::slice::from_ref(&zip)).await;
-    user.see("1 to create, 1 to change, 0 left as they are, 0 wrong", PATIENCE).await;
+    user.see("1 to create, 1 to change, 0 to remove, 0 left as they are, 0 wrong", PATIENCE).await;
     assert_eq!(names(&there).await, ["get-1-1-6"], "only looked at");
     fits(&mut user, "preview").await;
     looks(&mut user, "preview").await;
@@ -404,7 +404,7 @@ fn id_in(text: &str) -> String {
     words.clone().find(is_id).unwrap_or_else(|| panic!("no id in {text}")).to_owned()
 }
 
-fn page(relay: &Relay, rest: &str) -> String {
+pub(super) fn page(relay: &Relay, rest: &str) -> String {
     format!("{}code{rest}", relay.page())
 }
 
@@ -443,7 +443,7 @@ async fn choose(user: &Browser, mark: &str, files: &[PathBuf]) {
 }
 
 /// In the other theme and in a narrow window.
-async fn looks(user: &mut Browser, stage: &str) {
+pub(super) async fn looks(user: &mut Browser, stage: &str) {
     user.click_part("theme").await;
     fits(user, &format!("{stage}-other-theme")).await;
     user.resize(900, 1000).await;

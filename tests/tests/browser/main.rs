@@ -14,6 +14,7 @@ mod looking;
 mod looks;
 mod monitor;
 mod office;
+mod project;
 mod reconnect;
 mod routes;
 mod silence;

@@ -296,6 +296,46 @@ async fn an_archive_takes_everything_to_another_relay() {
 }
 
 #[tokio::test]
+async fn an_import_says_before_what_it_replaces_removes_and_stops() {
+    let (one, other) = (Relay::start().await, Relay::start().await);
+    let cyclic = with(block::product_name("0,0"), "/CtrlCfg", json!({ "TriggerType": 200 }));
+    let mut ids = Vec::new();
+    for relay in [&one, &other] {
+        let id = relay.rest.create(&cyclic).await;
+        assert_eq!(relay.rest.post(&format!("blocks/{id}/in"), &json!({ "IN": true })).await.status, 200);
+        ids.push(id);
+        plant(&relay.rest).await;
+    }
+    save(&one.rest, &format!("blocks/{}", ids[0]), |block| block["AppCfg"]["Attribute"] = json!(6)).await;
+    save(&one.rest, "variables/v2", |variable| variable["unit"] = json!("rpm")).await;
+    let more = json!({ "variables": [{ "name": "here", "address": "here" }] });
+    assert_eq!(one.rest.post("groups/g1/variables", &more).await.status, 201);
+    let more = json!({ "variables": [{ "name": "x", "address": "x" }, { "name": "y", "address": "y" }] });
+    assert_eq!(other.rest.post("groups/g1/variables", &more).await.status, 201);
+
+    let packed = export(&one.rest).await;
+    for (path, input) in [("project?preview=true", true), ("project", false)] {
+        let answer = import(&other.rest, path, packed.clone()).await;
+        let details: Vec<_> = answer.body["parts"]
+            .as_array()
+            .expect("parts")
+            .iter()
+            .filter_map(|part| part["detail"].as_str())
+            .collect();
+        assert_eq!(
+            details,
+            [
+                "it runs, and is stopped; AppCfg.Attribute: 7 → 6",
+                "variables: 1 created, 1 changed, 2 removed"
+            ]
+        );
+        assert_eq!(other.rest.get(&format!("blocks/{}/status", ids[1])).await.body["IN"], input);
+    }
+    let left = other.rest.get("groups/g1/variables").await.body;
+    assert_eq!(left.as_array().map(Vec::len), Some(3), "{left}");
+}
+
+#[tokio::test]
 async fn an_archive_with_an_error_stores_nothing_and_says_where() {
     let relay = Relay::start().await;
     let rest = &relay.rest;

@@ -50,7 +50,7 @@ async fn a_folder_goes_into_an_archive_and_comes_back_the_same() {
     let checked = check(&back).await;
     assert_eq!(
         (checked.code, checked.stdout.lines().last()),
-        (0, Some("1 blocks, 1 targets, 1 groups: 0 errors")),
+        (0, Some("1 block, 1 target, 1 group: 0 errors")),
         "{checked:?}"
     );
 }
@@ -133,7 +133,7 @@ async fn a_check_tells_everything_with_its_place_also_to_machines() {
         "error: blocks/other.json: many file systems cannot tell this name from blocks/Other.json",
         "error: blocks/other.json:1:",
         "warning: targets/nx-1.json:1:33: this version does not know the member `pth`",
-        "3 blocks, 1 targets, 1 groups: 2 errors",
+        "3 blocks, 1 target, 1 group: 2 errors",
     ] {
         assert!(checked.stdout.contains(told), "{told}\n{}", checked.stdout);
     }

@@ -1,12 +1,15 @@
-//! Everything as files: download, upload.
+//! Everything as files: download, upload, and the folder that the relay keeps.
 
+mod folder;
 mod preview;
+mod review;
 mod upload;
 
 use cipdeck_shared::api::{ProjectFolder, Role};
 use yew::prelude::*;
 
-use self::upload::Upload;
+pub(super) use self::review::Source;
+use self::{folder::Folder, upload::Upload};
 use super::i18n::tr;
 use crate::{
     hooks::{use_session, use_title},
@@ -20,6 +23,7 @@ pub(super) fn ProjectPage() -> Html {
     use_title(&tr!("project.title"));
     use_session();
     let served = use_fetched::<ProjectFolder>("project/folder".to_owned());
+    let is_kept = served.data.as_ref().is_some_and(|served| served.folder.is_some());
     html! {
         <div class="code-page">
             <div class="page-head"><h1>{ tr!("project.title") }</h1></div>
@@ -45,6 +49,12 @@ pub(super) fn ProjectPage() -> Html {
                     }
                 </section>
             </div>
+            if is_kept && session::may(Role::may_edit) {
+                <section class="panel project-folder">
+                    <h2>{ tr!("project.folder_title") }</h2>
+                    <Folder />
+                </section>
+            }
         </div>
     }
 }

@@ -16,7 +16,8 @@ pub(super) fn preview(import: &ProjectImport) -> Html {
     let counts = tr!(
         "project.counts",
         created = count(&[ProjectChange::Created]),
-        changed = count(&[ProjectChange::Changed, ProjectChange::Removed]),
+        changed = count(&[ProjectChange::Changed]),
+        removed = count(&[ProjectChange::Removed]),
         left = count(&STAYS),
         wrong = errors
     );
