@@ -10,7 +10,9 @@ use cipdeck_shared::config::project::{
     PROJECT_HEAD, Project, ProjectGroup, ProjectTarget, ProjectVariable, files, free_file_name, is_portable,
     read,
 };
-use cipdeck_shared::config::{BlockConfig, DeviceConfig, Extra, MsgCipGeneric, VariableConfig};
+use cipdeck_shared::config::{
+    BlockConfig, DeviceConfig, Extra, MsgCipGeneric, SendReq, SendReqForm, VariableConfig,
+};
 use proptest::collection::{btree_map, vec};
 use proptest::prelude::*;
 use serde_json::Value;
@@ -49,6 +51,21 @@ fn block() -> impl Strategy<Value = BlockConfig> {
     )
 }
 
+fn words_block() -> impl Strategy<Value = BlockConfig> {
+    let form = proptest::sample::select(SendReqForm::ALL.as_slice());
+    (form, ".{0,20}", ".{0,30}", ".{0,40}", any::<[i64; 4]>(), any::<i64>(), extra()).prop_map(
+        |(form, name, address, data, management, period, extra)| {
+            let mut config = SendReq::new(form, &name);
+            config.address = address;
+            config.data_to_send = data;
+            config.management_param = management.to_vec();
+            config.period = period;
+            config.extra = extra;
+            config.into()
+        },
+    )
+}
+
 fn group() -> impl Strategy<Value = ProjectGroup> {
     let variable =
         (".{0,10}", any::<f64>().prop_filter("JSON", |min| min.is_finite()), any::<i64>(), extra());
@@ -70,25 +87,27 @@ fn group() -> impl Strategy<Value = ProjectGroup> {
 
 fn project() -> impl Strategy<Value = Project> {
     let target = (".{0,20}", vec(group(), 0..3), extra());
-    (vec(block(), 0..4), vec(target, 0..3), extra()).prop_map(|(blocks, targets, extra)| {
-        let mut project = Project::default();
-        project.head.extra = extra;
-        for block in blocks {
-            let file = free_file_name(block.name(), |file| project.blocks.contains_key(file));
-            project.blocks.insert(file, block);
-        }
-        for (name, groups, extra) in targets {
-            let config = DeviceConfig::new(&name, "0,0");
-            let mut target = ProjectTarget { config, extra, groups: BTreeMap::new() };
-            for group in groups {
-                let file = free_file_name(&group.name, |file| target.groups.contains_key(file));
-                target.groups.insert(file, group);
+    (vec(prop_oneof![block(), words_block()], 0..4), vec(target, 0..3), extra()).prop_map(
+        |(blocks, targets, extra)| {
+            let mut project = Project::default();
+            project.head.extra = extra;
+            for block in blocks {
+                let file = free_file_name(block.name(), |file| project.blocks.contains_key(file));
+                project.blocks.insert(file, block);
             }
-            let file = free_file_name(&name, |file| project.targets.contains_key(file));
-            project.targets.insert(file, target);
-        }
-        project
-    })
+            for (name, groups, extra) in targets {
+                let config = DeviceConfig::new(&name, "0,0");
+                let mut target = ProjectTarget { config, extra, groups: BTreeMap::new() };
+                for group in groups {
+                    let file = free_file_name(&group.name, |file| target.groups.contains_key(file));
+                    target.groups.insert(file, group);
+                }
+                let file = free_file_name(&name, |file| project.targets.contains_key(file));
+                project.targets.insert(file, target);
+            }
+            project
+        },
+    )
 }
 
 proptest! {

@@ -307,7 +307,8 @@ async fn an_import_says_before_what_it_replaces_removes_and_stops() {
         plant(&relay.rest).await;
     }
     save(&one.rest, &format!("blocks/{}", ids[0]), |block| block["AppCfg"]["Attribute"] = json!(6)).await;
-    save(&one.rest, "variables/v2", |variable| variable["unit"] = json!("rpm")).await;
+    let variable = with(one.rest.get("groups/g1/variables").await.body[1].clone(), "/unit", "rpm");
+    assert_eq!(one.rest.put("variables/v2", &variable).await.status, 200);
     let more = json!({ "variables": [{ "name": "here", "address": "here" }] });
     assert_eq!(one.rest.post("groups/g1/variables", &more).await.status, 201);
     let more = json!({ "variables": [{ "name": "x", "address": "x" }, { "name": "y", "address": "y" }] });
