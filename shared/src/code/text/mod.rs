@@ -22,10 +22,13 @@
 //! ```
 
 mod constant;
+mod declaration;
 mod grammar;
+mod input;
 mod literal;
 mod memory;
 mod reading;
+mod roots;
 mod script;
 mod syntax;
 mod token;
@@ -35,7 +38,8 @@ mod tests;
 
 pub(super) use self::literal::{Literal, quoted};
 pub(super) use self::memory::Memory;
-pub(super) use self::reading::{Reading, left_over, roots};
+pub(super) use self::reading::Reading;
+pub(super) use self::roots::{left_over, roots};
 pub(super) use self::script::{Item, Script};
 pub(super) use self::syntax::{Call, Declaration, Declared, Expression, Reference, Statement, Step};
 pub(super) use self::token::{Lexeme, Place, tokens};

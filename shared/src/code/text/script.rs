@@ -5,7 +5,9 @@ use core::ops::Range;
 
 use winnow::stream::{Stateful, Stream, TokenSlice};
 
-use super::grammar::{Failure, Input, assignment_or_call, declaration, is_next};
+use super::declaration::declaration;
+use super::grammar::assignment_or_call;
+use super::input::{Failure, Input, is_next};
 use super::syntax::Statement;
 use super::token::{Lexeme, Place, Token, tokens};
 use crate::code::remark::{Remark, RemarkKind};
