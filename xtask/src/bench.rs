@@ -14,6 +14,19 @@ pub(crate) fn all(report: &mut Report, quick: bool, only: Option<String>, consen
     let with_tags = only.as_deref().is_none_or(|only| "tags".contains(only));
     let python = if with_tags { Some(tools::tag_clients(report, consent)?) } else { None };
     let folder = workspace::target().join("bench");
+    if only.as_deref().is_none_or(|only| "code".contains(only)) {
+        report.step("bench: code", || {
+            let mut command = cargo();
+            command.args(["bench", "-p", "cipdeck-shared", "--bench", "code", "--", "--out"]).arg(&folder);
+            if quick {
+                command.arg("--quick");
+            }
+            run(&mut command)
+        })?;
+    }
+    if only.as_deref() == Some("code") {
+        return Ok(());
+    }
     let bench = |name: &str| {
         let mut command = cargo();
         command.args(["bench", "-p", "cipdeck-tests", "--bench", name, "--"]);

@@ -63,12 +63,13 @@ enum Task {
         #[command(flatten)]
         toolchain: Preference,
     },
-    /// Measures our client beside others, through the relay, with 1,000 cyclic blocks, and with tags; needs Linux.
+    /// Measures code of controllers, our client beside others, through the relay, with 1,000 cyclic blocks, and with tags;
+    /// needs Linux.
     Bench {
         /// Fewer and shorter rounds: good for a look, not for a document.
         #[arg(long)]
         quick: bool,
-        /// Only tables whose name contains this: peers, simulated, websocket, history, cyclic, tags, plant.
+        /// Only tables whose name contains this: code, peers, simulated, websocket, history, cyclic, tags, plant.
         #[arg(long)]
         only: Option<String>,
         #[command(flatten)]
