@@ -1,5 +1,6 @@
 //! Tables of words among the variables of a section.
 
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -33,19 +34,30 @@ pub(super) struct Variables<'v, 's, 'a> {
     pub(super) script: &'s Script<'a>,
     pub(super) memory: &'v Memory<'s, 'a>,
     pub(super) located: &'v Located,
+    pub(super) declared: &'v Declarations<'s, 'a>,
+}
+
+/// The first declaration of each name and of each place, in lower case.
+pub(super) type Declarations<'s, 'a> = BTreeMap<String, &'s Declaration<'a>>;
+
+/// All declarations of a section.
+pub(super) fn declarations<'s, 'a>(script: &'s Script<'a>) -> Declarations<'s, 'a> {
+    let mut declared = BTreeMap::new();
+    for item in &script.items {
+        if let Statement::Declaration(declaration) = &item.statement {
+            let names = declaration.names.iter().map(|(name, _)| *name).chain(declaration.at);
+            for name in names {
+                declared.entry(name.to_ascii_lowercase()).or_insert(declaration);
+            }
+        }
+    }
+    declared
 }
 
 impl<'s, 'a> Variables<'_, 's, 'a> {
-    /// The declaration of a variable.
+    /// The declaration of a variable, or of what lies at a place.
     pub(super) fn declaration(&self, name: &str) -> Option<&'s Declaration<'a>> {
-        self.script.items.iter().find_map(|item| match &item.statement {
-            Statement::Declaration(declaration) => {
-                let named = declaration.names.iter().any(|(it, _)| it.eq_ignore_ascii_case(name));
-                let placed = declaration.at.is_some_and(|at| at.eq_ignore_ascii_case(name));
-                (named || placed).then_some(declaration)
-            }
-            _ => None,
-        })
+        self.declared.get(&name.to_ascii_lowercase()).copied()
     }
 
     /// A table: an array, `%MW100:5`, or an array from an element on.
