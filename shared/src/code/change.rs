@@ -100,7 +100,7 @@ impl Change {
     }
 
     /// Whether another request would be sent, or to another device.
-    pub(super) fn is_other_request(&self) -> bool {
+    fn is_other_request(&self) -> bool {
         self.grade == Grade::Request
     }
 
@@ -108,6 +108,12 @@ impl Change {
     pub const fn is_loss(&self) -> bool {
         !matches!(self.grade, Grade::Carried)
     }
+}
+
+/// Whether a text must not run before somebody has looked at it: what was converted before, or what is written of it,
+/// is another request, or goes to another device.
+pub(super) fn is_held(before: &[Change], written: &[Change]) -> bool {
+    before.iter().chain(written).any(Change::is_other_request)
 }
 
 /// `TargetCfg.UcmmTimeout 3050 -> 3100 (adjusted): its timeout …`

@@ -8,7 +8,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::Code;
-use super::change::{Change, Grade, Why};
+use super::change::{Change, Grade, Why, is_held};
 use super::dialect::Dialect;
 use super::header::comment;
 use super::message::{Message, Tells, spaced};
@@ -17,7 +17,7 @@ use crate::config::{BlockConfig, write_hex};
 pub(super) use self::read::import;
 
 /// A block as a command line for a POSIX shell.
-pub(super) fn export(block: &BlockConfig) -> Code {
+pub(super) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -60,7 +60,9 @@ pub(super) fn export(block: &BlockConfig) -> Code {
         app.attribute,
         spaced(message.plan.bytes()),
     );
-    Code { text: format!("{}{}\n", comment(Dialect::Cli, &about), words.join(" ")), changes }
+    // What would reach something else does not run before somebody has looked at it.
+    let never = if is_held(before, &changes) { "false && " } else { "" };
+    Code { text: format!("{}{never}{}\n", comment(Dialect::Cli, &about), words.join(" ")), changes }
 }
 
 /// One timeout serves for both: of the connection, where there is one.

@@ -117,15 +117,15 @@ pub fn export(block: &BlockConfig, to: Dialect, options: &Options) -> Code {
     let Converted { config, mut changes } = convert(block, to.kind_for(block));
     let Code { text, changes: further } = match to {
         Dialect::Json => json::export(&config),
-        Dialect::CcwSt => ccw_st::export(&config),
-        Dialect::L5x => l5x::export(&config),
+        Dialect::CcwSt => ccw_st::export(&config, &changes),
+        Dialect::L5x => l5x::export(&config, &changes),
         Dialect::SendReqEtc100 | Dialect::SendReqEtc101 | Dialect::DataExch => {
-            control_expert::export(&config, options.language)
+            control_expert::export(&config, options.language, &changes)
         }
-        Dialect::SysmacSt => sysmac_st::export(&config),
-        Dialect::Pycomm3 => pycomm3::export(&config),
-        Dialect::Rust => rust::export(&config),
-        Dialect::Cli => cli::export(&config),
+        Dialect::SysmacSt => sysmac_st::export(&config, &changes),
+        Dialect::Pycomm3 => pycomm3::export(&config, &changes),
+        Dialect::Rust => rust::export(&config, &changes),
+        Dialect::Cli => cli::export(&config, &changes),
         Dialect::Hex => hex::export(&config),
     };
     // An error of the block is told once, as it was before the conversion.

@@ -2,10 +2,11 @@
 
 use alloc::format;
 use alloc::string::{String, ToString};
+use alloc::vec;
 use alloc::vec::Vec;
 
 use super::*;
-use crate::config::{MsgCipGeneric, write_hex};
+use crate::config::{MsgCipGeneric, SendReq, SendReqForm, write_hex};
 use crate::plan::{MessagePlan, Severity};
 
 fn message(number: u32) -> MsgCipGeneric {
@@ -23,6 +24,33 @@ fn errors(imported: &Imported) -> Vec<String> {
     let blocks = imported.blocks.iter().flat_map(|found| &found.remarks);
     let all = imported.remarks.iter().chain(blocks);
     all.filter(|remark| remark.severity == Severity::Error).map(ToString::to_string).collect()
+}
+
+#[test]
+fn what_a_conversion_sends_otherwise_does_not_run() {
+    let mut words = SendReq::new(SendReqForm::Etc100, "turned");
+    words.address = "ADDR('0.2.0.192.168.1.102')".into();
+    // Instance before class: other bytes in every dialect that writes the path by itself.
+    (words.data_to_send, words.management_param) = ("0000 030E 0124 0120 0730".into(), vec![0, 0, 30, 10]);
+    let routed = MsgCipGeneric::product_name("4,192.168.1.102,1,3");
+    let held = [
+        (words.clone().into(), Dialect::CcwSt, "(FALSE AND "),
+        (words.clone().into(), Dialect::L5x, "AFI()"),
+        (words.clone().into(), Dialect::SysmacSt, "FALSE AND "),
+        (words.clone().into(), Dialect::Pycomm3, "raise SystemExit(\"this script does not"),
+        (words.clone().into(), Dialect::Rust, "return Err("),
+        (words.into(), Dialect::Cli, "\nfalse && cipdeck send "),
+        (routed.clone().into(), Dialect::SendReqEtc100, "IF FALSE AND "),
+        (routed.into(), Dialect::DataExch, "IF FALSE AND "),
+    ];
+    for (block, dialect, guard) in held {
+        let text = export(&block, dialect, &Options::default()).text;
+        assert!(text.contains(guard), "{dialect}: {text}");
+        let imported = import(&text, Some(dialect));
+        assert_eq!((imported.blocks.len(), errors(&imported)), (1, Vec::new()), "{dialect}: {text}");
+        let straight = export(&message(1).into(), dialect, &Options::default()).text;
+        assert!(!straight.contains(guard), "{dialect}: {straight}");
+    }
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn without_comments(text: &str) -> String {
 
 #[test]
 fn a_read_looks_as_in_the_manual() {
-    let code = export(&MsgCipGeneric::product_name("4,192.168.1.100").into());
+    let code = export(&MsgCipGeneric::product_name("4,192.168.1.100").into(), &[]);
     for part in [
         "product_name : MSG_CIPGENERIC;",
         "product_name_Res : ARRAY[1..490] OF USINT;",
@@ -59,7 +59,7 @@ fn what_is_written_is_read_back_without_its_comments() {
     typed.req_data = "01fbff80feffffffdc05ffffffff0000c03f0aff4142".into();
     full.req_data = "ff00".into();
     for config in [MsgCipGeneric::product_name("0,0"), full, typed] {
-        let Code { text, changes } = export(&config.clone().into());
+        let Code { text, changes } = export(&config.clone().into(), &[]);
         assert!(changes.iter().all(|change| !change.is_loss()), "{changes:?}");
         let imported = import(&without_comments(&text));
         assert!(
@@ -81,7 +81,7 @@ fn a_typed_variable_that_somebody_changes_changes_its_bytes() {
     let mut config = MsgCipGeneric::product_name("0,0");
     (config.app_cfg.service, config.req_layout, config.req_data) =
         (16, "ref: INT; total: UDINT".into(), "fbff01020304".into());
-    let text = export(&config.into()).text.replace("_ref : INT := -5;", "_ref : INT := -300;");
+    let text = export(&config.into(), &[]).text.replace("_ref : INT := -5;", "_ref : INT := -300;");
     let text = text.replace("_total : UDINT := 67305985;", "_total : UDINT := 16#FFFEFDFC;");
     let found = &import(&text).blocks[0];
     assert_eq!(
@@ -135,7 +135,7 @@ fn a_value_that_no_constant_says_stays_bytes() {
     (config.app_cfg.service, config.name) = (16, "m".into());
     config.req_layout = "nan: REAL; endless: LREAL; odd: BOOL; n: UINT".into();
     config.req_data = "0000c07f 000000000000f0ff 02 0500".into();
-    let text = export(&config.clone().into()).text;
+    let text = export(&config.clone().into(), &[]).text;
     for field in ["m_req_nan", "m_req_endless", "m_req_odd"] {
         assert!(!text.contains(field), "{field} has no value, and would be packed over the bytes\n{text}");
     }
@@ -199,7 +199,7 @@ fn a_copy_counts_elements_of_its_destination() {
     (config.app_cfg.service, config.req_layout, config.req_data) =
         (16, "n: INT; level: REAL".into(), "01000000c03f".into());
     config.res_layout = "n: UINT; level: LREAL".into();
-    let text = export(&config.into()).text;
+    let text = export(&config.into(), &[]).text;
     for part in [
         "    product_name_Copy : COP;",
         "product_name_Copy(TRUE, product_name_req_level, 0, product_name_Req, 2, 4, FALSE);",
@@ -223,7 +223,7 @@ MSG_CIPGENERIC_2(IN := go, CtrlCfg := c, AppCfg := a, TargetCfg := t, ReqData :=
 
 #[test]
 fn what_would_reach_another_device_does_not_run() {
-    let code = export(&MsgCipGeneric::product_name("4,10.0.0.1:44820,1,0").into());
+    let code = export(&MsgCipGeneric::product_name("4,10.0.0.1:44820,1,0").into(), &[]);
     assert!(code.text.contains("product_name(FALSE AND product_name_IN, product_name_Ctrl,"));
     let losses: Vec<String> = code.losses().map(ToString::to_string).collect();
     let path = "TargetCfg.Path 4,10.0.0.1:44820,1,0 -> 4,10.0.0.1,1,0 (request): it always goes to TCP port 44818 there";

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use super::fields::{Fields, Way};
 use crate::code::Code;
-use crate::code::change::{Change, Grade, Why};
+use crate::code::change::{Change, Grade, Why, is_held};
 use crate::code::header::{HELD, harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
@@ -20,7 +20,7 @@ const TOLD: [&str; 4] =
     ["CtrlCfg.Cancel", "CtrlCfg.StrMode", "TargetCfg.ConnMsgTimeout", "TargetCfg.ConnClose"];
 
 /// A block as Structured Text.
-pub(in crate::code) fn export(block: &BlockConfig) -> Code {
+pub(in crate::code) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -30,7 +30,7 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
     let reply = Fields::of(&message.config.res_layout, None, &name);
     let changes = changes(&message, &name, &request, &reply);
     let mut text = String::new();
-    let held = changes.iter().any(Change::is_other_request);
+    let held = is_held(before, &changes);
     let section = Section { message: &message, name: &name, request: &request, reply: &reply, held };
     section.write(&mut text);
     Code { text, changes }

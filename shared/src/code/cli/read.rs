@@ -36,6 +36,8 @@ pub(in super::super) fn import(text: &str) -> Imported {
         let command = command.get(start..).unwrap_or_default();
         match command {
             [] => {}
+            // It keeps a command from running, as we write it.
+            [only] if only.text == "false" => {}
             [program, send, rest @ ..] if is_cipdeck(&program.text) && send.text == "send" => {
                 imported.blocks.push(Command::default().read(program, rest));
             }
@@ -236,7 +238,7 @@ mod tests {
         (config.app_cfg.member_cnt, config.app_cfg.member_id) = (2, alloc::vec![1, 300, 0]);
         (config.req_data, config.target_cfg.ucmm_timeout) = ("0a0b".into(), 2_500);
         let block = BlockConfig::from(config.clone());
-        let code = export(&block);
+        let code = export(&block, &[]);
         assert_eq!(code.losses().count(), 0);
         let read = import(&code.text);
         assert_eq!((read.blocks.len(), read.remarks.len()), (1, 0), "{read:?}");

@@ -102,7 +102,7 @@ fn a_section_says_all_of_a_request_in_both_languages() {
     for (index, (_, words, ..)) in GOLDEN.into_iter().enumerate() {
         for language in [Language::St, Language::Il] {
             let block = BlockConfig::from(golden(index));
-            let code = export(&block, language);
+            let code = export(&block, language, &[]);
             assert!(code.changes.iter().all(|change| change.grade == Grade::Carried), "{:?}", code.changes);
             let words = read_words(words).unwrap();
             for word in words {
@@ -126,7 +126,7 @@ fn the_section_tests_the_activity_bit_and_reads_the_reports_when_it_falls() {
     let mut config = golden(0);
     config.name = "*) drive's (* \n current".into();
     config.management_param[2] = 0;
-    let st = export(&config.clone().into(), Language::St).text;
+    let st = export(&config.clone().into(), Language::St, &[]).text;
     for part in [
         "(* * ) drive's ( *   current, SEND_REQ for TSX ETC 100 *)",
         "IF drive_s_current_Start AND NOT drive_s_current_Last AND NOT drive_s_current_Mgmt[0].0 THEN",
@@ -139,7 +139,7 @@ fn the_section_tests_the_activity_bit_and_reads_the_reports_when_it_falls() {
     ] {
         assert!(st.contains(part), "{part}\n{st}");
     }
-    let il = export(&config.into(), Language::Il).text;
+    let il = export(&config.into(), Language::Il, &[]).text;
     assert!(il.contains("    LD drive_s_current_Adr\n    SEND_REQ 16#000E, drive_s_current_Send, "), "{il}");
     assert!(
         il.contains("_Recv\n    LD TRUE  (*") && il.contains("*)\n    ST drive_s_current_Busy\n"),
@@ -153,7 +153,7 @@ fn decimals_are_those_of_an_int_and_what_is_not_sent_is_said() {
     config.data_to_send.push_str(" FFA3 0001");
     config.management_param[2] = 40_000;
     config.management_param[3] += 1;
-    let st = export(&config.into(), Language::St).text;
+    let st = export(&config.into(), Language::St, &[]).text;
     for part in [
         "_Send[1] := 16#C0A8;  (* -16216: IP address 192.168 *)",
         "_Send[8] := 16#FFA3;  (* -93: byte 16#A3 = 163; the high byte is not sent *)",
@@ -357,9 +357,9 @@ fn what_would_reach_another_device_does_not_run() {
     let mut config = golden(0);
     config.address = "ADDR('0.2.0.192.168.1.102:44820')".into();
     let block = BlockConfig::from(config.clone());
-    assert!(export(&block, Language::St).text.contains("IF FALSE AND "));
-    let il = export(&block, Language::Il).text;
+    assert!(export(&block, Language::St, &[]).text.contains("IF FALSE AND "));
+    let il = export(&block, Language::Il, &[]).text;
     assert!(il.contains("    LD FALSE\n    AND "), "{il}");
     config.address = "ADDR('0.2.0.192.168.1.102')".into();
-    assert!(!export(&config.into(), Language::St).text.contains("FALSE AND"));
+    assert!(!export(&config.into(), Language::St, &[]).text.contains("FALSE AND"));
 }

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::Code;
-use super::super::change::{Change, Grade, Why};
+use super::super::change::{Change, Grade, Why, is_held};
 use super::super::dialect::Language;
 use super::super::header::{HELD, harmless};
 use super::super::message::{Ours, not_sendable, ours_alone};
@@ -17,7 +17,7 @@ use crate::plan::MessagePlan;
 use crate::plan::words::WordsPlan;
 
 /// A block as a section of Control Expert.
-pub(in super::super) fn export(block: &BlockConfig, language: Language) -> Code {
+pub(in super::super) fn export(block: &BlockConfig, language: Language, before: &[Change]) -> Code {
     let plan = MessagePlan::of(block).0;
     let parts = block.as_send_req().zip(plan).and_then(|(config, plan)| {
         let words = plan.words()?.as_ref().clone();
@@ -32,7 +32,7 @@ pub(in super::super) fn export(block: &BlockConfig, language: Language) -> Code 
         changes.push(Change::new(&"name", &config.name, &name, Grade::Carried, Why::NameCharacters));
     }
     let address = without_port(address);
-    let held = changes.iter().any(Change::is_other_request);
+    let held = is_held(before, &changes);
     let section = Section { config, words: &words, plan: &plan, address: &address, name: &name, held };
     let mut text = section.head();
     text.push_str(&match language {

@@ -35,7 +35,7 @@ fn request(config: &BlockConfig) -> (Vec<u8>, String, u32, Option<u32>) {
 #[test]
 fn an_export_says_all_of_a_message() {
     let block = BlockConfig::from(write_speed());
-    let code = export(&block);
+    let code = export(&block, &[]);
     assert_eq!(code.losses().count(), 0, "{:?}", code.changes);
     for part in [
         r#"ServiceCode="16#0010" ObjectType="16#0374" TargetObject="274" AttributeNumber="16#0000""#,
@@ -63,7 +63,7 @@ fn a_connection_and_a_period_come_back() {
         (target.cip_conn_mode, target.conn_msg_timeout, target.conn_close) = (1, connected_ms, close);
         config.ctrl_cfg.trigger_type = period;
         let block = BlockConfig::from(config.clone());
-        let code = export(&block);
+        let code = export(&block, &[]);
         assert_eq!(code.losses().count(), 0, "{:?}", code.changes);
         let found = only(&code.text);
         assert_eq!(found.remarks, []);
@@ -78,7 +78,7 @@ fn what_a_message_tag_cannot_say_is_told_and_does_not_run() {
     let grade = |change: &dyn Fn(&mut MsgCipGeneric)| {
         let mut config = write_speed();
         change(&mut config);
-        let code = export(&config.into());
+        let code = export(&config.into(), &[]);
         let held = code.text.contains("AFI()XIC(");
         let found: Vec<(Grade, Why)> = code.losses().map(|it| (it.grade, it.why.clone())).collect();
         (held, found)
@@ -172,7 +172,7 @@ fn names_do_not_break_out() {
     ] {
         let mut config = write_speed();
         config.name = name.into();
-        let code = export(&config.clone().into());
+        let code = export(&config.clone().into(), &[]);
         let found = only(&code.text);
         assert_eq!(request(&found.config), request(&config.into()), "{name}");
     }
@@ -331,10 +331,10 @@ fn data_of_aliases_and_members_is_read() {
 fn a_description_shows_what_the_export_sends() {
     let mut config = write_speed();
     (config.app_cfg.member_cnt, config.app_cfg.member_id[0]) = (1, 3);
-    let text = export(&config.clone().into()).text;
+    let text = export(&config.clone().into(), &[]).text;
     assert!(text.contains("; request 10 04 21 00 74 03 25 00 12 01 0A FF D2]]>"), "{text}");
     config.app_cfg.instance = 70_000;
-    assert!(export(&config.into()).text.contains("; request is not the block's]]>"));
+    assert!(export(&config.into(), &[]).text.contains("; request is not the block's]]>"));
 }
 
 #[test]

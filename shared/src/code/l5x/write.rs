@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::Code;
-use super::super::change::{Change, Grade, Why};
+use super::super::change::{Change, Grade, Why, is_held};
 use super::super::message::{Message, Tells};
 use super::super::name::identifier;
 use super::path::connection_path;
@@ -17,7 +17,7 @@ use crate::config::BlockConfig;
 const TELLS: Tells = Tells { trigger: true, res_data_size: true };
 
 /// A block as an L5X document.
-pub(in super::super) fn export(block: &BlockConfig) -> Code {
+pub(in super::super) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -25,7 +25,7 @@ pub(in super::super) fn export(block: &BlockConfig) -> Code {
     let changes = changes(&message);
     let text = Document { message: &message, name: identifier(&message.config.name) };
     // A request that is not the block's must not run before somebody has looked at it.
-    let held = changes.iter().any(Change::is_other_request);
+    let held = is_held(before, &changes);
     Code { text: text.write(held), changes }
 }
 

@@ -37,7 +37,7 @@ fn a_script_says_all_of_a_message() {
         let mut config = config(path);
         config.name = "set \"speed\"\n🦀".into();
         let block = BlockConfig::from(config);
-        let code = export(&block);
+        let code = export(&block, &[]);
         assert_eq!(code.changes, [], "{path}");
         let found = only(&code.text);
         assert_eq!(request(&found.config), request(&block), "{}", code.text);
@@ -51,12 +51,12 @@ fn a_connection_has_one_timeout_and_ends_with_the_script() {
     let target = &mut config.target_cfg;
     (target.cip_conn_mode, target.conn_msg_timeout, target.conn_close) = (1, 2_500, true);
     let block = BlockConfig::from(config.clone());
-    let code = export(&block);
+    let code = export(&block, &[]);
     assert_eq!(code.changes, []);
     assert_eq!(request(&only(&code.text).config), request(&block));
     config.target_cfg.conn_msg_timeout = 9_000;
     config.target_cfg.conn_close = false;
-    let whys: Vec<Why> = export(&config.into()).changes.into_iter().map(|change| change.why).collect();
+    let whys: Vec<Why> = export(&config.into(), &[]).changes.into_iter().map(|change| change.why).collect();
     assert_eq!(whys, [Why::OneTimeout, Why::ConnectionStays]);
 }
 
@@ -65,7 +65,7 @@ fn what_the_library_would_send_otherwise_is_told_and_not_sent() {
     let told = |change: &dyn Fn(&mut MsgCipGeneric)| {
         let mut config = config("4,10.0.0.7");
         change(&mut config);
-        let code = export(&config.into());
+        let code = export(&config.into(), &[]);
         let why = code
             .changes
             .iter()

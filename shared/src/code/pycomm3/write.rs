@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::Code;
-use super::super::change::{Change, Grade, Why};
+use super::super::change::{Change, Grade, Why, is_held};
 use super::super::cli::closes_at_end;
 use super::super::dialect::Dialect;
 use super::super::header::comment;
@@ -23,7 +23,7 @@ const ROUTER_MS: u32 = 5_120;
 const MAX_PORT: u16 = 14;
 
 /// A block as a script that runs.
-pub(in super::super) fn export(block: &BlockConfig) -> Code {
+pub(in super::super) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -32,7 +32,7 @@ pub(in super::super) fn export(block: &BlockConfig) -> Code {
     let timeout = timeout(&message, &mut changes);
     closes_at_end(&message, &mut changes);
     requests(&message, &mut changes);
-    let held = changes.iter().any(|change| change.grade == Grade::Request);
+    let held = is_held(before, &changes);
     Code { text: script(&message, timeout, held), changes }
 }
 

@@ -45,7 +45,7 @@ fn a_program_says_all_of_a_message() {
         let target = &mut config.target_cfg;
         (target.cip_conn_mode, target.conn_close) = (connected.into(), connected);
         let block = BlockConfig::from(config);
-        let code = export(&block);
+        let code = export(&block, &[]);
         assert_eq!(code.changes, [], "{path}");
         let found = only(&code.text);
         assert_eq!(request(&found.config), request(&block), "{}", code.text);
@@ -56,7 +56,7 @@ fn a_program_says_all_of_a_message() {
 #[test]
 fn what_the_library_cannot_send_is_told_and_not_sent() {
     for (path, why) in [("0,0", Why::NoBuiltIn), ("4,10.0.0.7,18,10.0.0.20", Why::NoRoute)] {
-        let code = export(&config(path).into());
+        let code = export(&config(path).into(), &[]);
         let whys: Vec<(Grade, Why)> = code.changes.iter().map(|it| (it.grade, it.why.clone())).collect();
         assert_eq!(whys, [(Grade::Request, why)]);
         assert!(code.text.contains("return Err("), "{}", code.text);

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Write;
 
 use super::super::Code;
-use super::super::change::{Change, Grade, Why};
+use super::super::change::{Change, Grade, Why, is_held};
 use super::super::dialect::Dialect;
 use super::super::header::comment;
 use super::super::message::{Message, Tells, spaced};
@@ -21,7 +21,7 @@ const MAX_PORT: u16 = 14;
 const MAX_INSTANCE: i64 = 0xFFFF;
 
 /// A block as a program.
-pub(in super::super) fn export(block: &BlockConfig) -> Code {
+pub(in super::super) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -38,7 +38,7 @@ pub(in super::super) fn export(block: &BlockConfig) -> Code {
     if ports(&message).any(|port| port.port() > MAX_PORT) {
         other("", Why::NoRoute);
     }
-    let held = changes.iter().any(|change| change.grade == Grade::Request);
+    let held = is_held(before, &changes);
     Code { text: Program { message: &message }.text(held), changes }
 }
 

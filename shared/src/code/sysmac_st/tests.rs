@@ -22,7 +22,7 @@ fn without_comments(text: &str) -> String {
 
 #[test]
 fn a_read_looks_as_in_the_manual() {
-    let text = export(&MsgCipGeneric::product_name("4,192.168.250.2,1,0").into()).text;
+    let text = export(&MsgCipGeneric::product_name("4,192.168.250.2,1,0").into(), &[]).text;
     for part in [
         "product_name : CIPUCMMSend;",
         "product_name_Path : _sREQUEST_PATH_EX;",
@@ -46,7 +46,7 @@ fn what_is_written_is_read_back_without_its_comments() {
     (target.cip_conn_mode, target.ucmm_timeout, target.conn_msg_timeout, target.conn_close) =
         (1, 900, 900, true);
     for config in [MsgCipGeneric::product_name("0,0"), write, connected] {
-        let Code { text, changes } = export(&config.clone().into());
+        let Code { text, changes } = export(&config.clone().into(), &[]);
         assert!(changes.iter().all(|change| !change.is_loss()), "{changes:?}");
         let imported = import(&without_comments(&text));
         assert_eq!(told(&imported), Vec::<String>::new(), "{text}");
@@ -66,7 +66,7 @@ fn what_sysmac_cannot_say_is_told() {
     let mut config = MsgCipGeneric::product_name("4,drive:44820,18,10.0.0.2");
     (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
     (config.target_cfg.ucmm_timeout, config.ctrl_cfg.trigger_type) = (1250, 500);
-    let code = export(&config.into());
+    let code = export(&config.into(), &[]);
     let losses: Vec<(String, Grade, &str)> =
         code.losses().map(|it| (it.member.clone(), it.grade, it.why.name())).collect();
     let loss = |member: &str, grade, why| (String::from(member), grade, why);
@@ -183,7 +183,7 @@ fn a_connection_has_one_timeout() {
     let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
     let target = &mut config.target_cfg;
     (target.cip_conn_mode, target.ucmm_timeout, target.conn_msg_timeout) = (1, 700, 900);
-    let code = export(&config.into());
+    let code = export(&config.into(), &[]);
     let losses: Vec<_> =
         code.losses().map(|it| (it.member.as_str(), it.to.as_str(), it.why.name())).collect();
     // A connection that stays would be opened anew at each start.
@@ -203,15 +203,15 @@ fn a_connection_has_one_timeout() {
 fn the_comment_shows_what_is_sent() {
     let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
     (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
-    assert!(export(&config.into()).text.contains("(* request 0E 03 20 01 24 01 30 07 *)"));
+    assert!(export(&config.into(), &[]).text.contains("(* request 0E 03 20 01 24 01 30 07 *)"));
 }
 
 #[test]
 fn what_would_reach_something_else_does_not_run() {
     let mut config = MsgCipGeneric::product_name("4,10.0.0.1");
-    assert!(!export(&config.clone().into()).text.contains("FALSE AND"));
+    assert!(!export(&config.clone().into(), &[]).text.contains("FALSE AND"));
     (config.app_cfg.member_cnt, config.app_cfg.member_id) = (1, alloc::vec![5, 0, 0]);
-    assert!(export(&config.clone().into()).text.contains("(Execute := FALSE AND product_name_Start,"));
+    assert!(export(&config.clone().into(), &[]).text.contains("(Execute := FALSE AND product_name_Start,"));
     config.target_cfg.cip_conn_mode = 1;
-    assert!(export(&config.into()).text.contains("_Open(Execute := FALSE AND product_name_Start,"));
+    assert!(export(&config.into(), &[]).text.contains("_Open(Execute := FALSE AND product_name_Start,"));
 }

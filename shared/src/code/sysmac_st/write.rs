@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use super::{SEGMENTS, route, width};
 use crate::code::Code;
-use crate::code::change::{Change, Grade, Why};
+use crate::code::change::{Change, Grade, Why, is_held};
 use crate::code::header::{HELD, harmless, line};
 use crate::code::message::{Message, Tells};
 use crate::code::name::identifier;
@@ -20,7 +20,7 @@ const STEP: u32 = 100;
 const MAX_REPLY: i64 = 492;
 
 /// A block as Structured Text.
-pub(in crate::code) fn export(block: &BlockConfig) -> Code {
+pub(in crate::code) fn export(block: &BlockConfig, before: &[Change]) -> Code {
     let message = match Message::of(block) {
         Ok(message) => message,
         Err(code) => return code,
@@ -32,7 +32,7 @@ pub(in crate::code) fn export(block: &BlockConfig) -> Code {
     changes.extend(message.renamed(&name));
     changes.extend(message.without_members());
     let mut out = String::new();
-    let held = changes.iter().any(Change::is_other_request);
+    let held = is_held(before, &changes);
     let section = Section { message: &message, name: &name, route: &route, held };
     section.about(&mut out);
     section.declarations(&mut out);
