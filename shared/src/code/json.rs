@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use super::dialect::Dialect;
 use super::remark::{Remark, RemarkKind};
 use super::{Code, Found, Imported};
-use crate::config::BlockConfig;
+use crate::config::{BlockConfig, project};
 
 /// A block as JSON, in the order of its members.
 pub(super) fn export(block: &BlockConfig) -> Code {
@@ -34,6 +34,12 @@ pub(super) fn import(text: &str) -> Imported {
     if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
         imported.remarks.push(unreadable(text, &error));
         return imported;
+    }
+    // The last of two members counts; that is not for a machine to decide.
+    for (place, what) in project::lost(text) {
+        let excerpt = text.lines().nth(place.line - 1).unwrap_or_default();
+        let what = RemarkKind::Told(what.to_string());
+        imported.remarks.push(Remark::error(place.line, place.column, excerpt, what));
     }
     let mut lines = Lines { text, at: 0, line: 1 };
     for range in elements(text) {
@@ -141,6 +147,17 @@ fn unreadable(text: &str, error: &serde_json::Error) -> Remark {
 mod tests {
     use super::*;
     use crate::config::MsgCipGeneric;
+
+    #[test]
+    fn a_member_that_is_there_twice_is_told() {
+        let text = export(&MsgCipGeneric::product_name("4,10.0.0.1").into()).text;
+        let text = text.replace("\"Class\": 1,", "\"Class\": 147,\n    \"Class\": 1,");
+        let imported = import(&text);
+        let told: Vec<String> = imported.remarks.iter().map(ToString::to_string).collect();
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains("error: the member `Class` is there twice: \"Class\": 1,"), "{told:?}");
+        assert_eq!(imported.blocks.len(), 1);
+    }
 
     #[test]
     fn a_block_goes_out_without_its_id_and_comes_back() {

@@ -40,6 +40,11 @@ impl<'a> Places<'a> {
     }
 }
 
+/// What would be lost of a text that is JSON by reading it: members that are there twice, numbers that are not kept.
+pub fn lost(text: &str) -> Vec<(Position, ProjectErrorKind)> {
+    Document::parse(text).err().unwrap_or_default()
+}
+
 /// A text that is JSON and says everything once.
 #[derive(Debug)]
 pub(super) struct Document<'a> {
