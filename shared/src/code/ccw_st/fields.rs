@@ -57,7 +57,7 @@ impl Fields {
             let inner = if field.name.is_empty() { "value".into() } else { identifier(&field.name) };
             let mut variable = format!("{name}_{direction}_{inner}");
             for number in 2.. {
-                if names.insert(variable.to_lowercase()) {
+                if names.insert(variable.to_ascii_lowercase()) {
                     break;
                 }
                 variable = format!("{name}_{direction}_{inner}_{number}");

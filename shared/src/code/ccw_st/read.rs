@@ -88,7 +88,7 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
     let mut types = BTreeMap::new();
     for item in &script.items {
         if let Statement::Declaration(declaration) = &item.statement {
-            types.extend(declaration.names.iter().map(|(name, _)| (name.to_lowercase(), &declaration.kind)));
+            types.extend(declaration.names.iter().map(|(name, _)| (name.to_ascii_lowercase(), &declaration.kind)));
         }
     }
     types
@@ -96,13 +96,13 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
 
 /// An instance of `COP`; one that nobody declares is known by its name.
 fn is_copy(call: &Call<'_>, types: &Types<'_, '_>) -> bool {
-    let declared = types.get(&call.name.root.to_lowercase());
+    let declared = types.get(&call.name.root.to_ascii_lowercase());
     declared.map_or_else(|| is_numbered(call.name.root, "COP"), |kind| kind.is("COP"))
 }
 
 /// An instance of `MSG_CIPGENERIC`; one that nobody declares is known by its parameters.
 fn is_message(call: &Call<'_>, types: &Types<'_, '_>) -> bool {
-    if let Some(kind) = types.get(&call.name.root.to_lowercase()) {
+    if let Some(kind) = types.get(&call.name.root.to_ascii_lowercase()) {
         return kind.is("MSG_CIPGENERIC");
     }
     let formal =
@@ -161,10 +161,10 @@ impl Block<'_, '_, '_> {
 
     /// The variables of this message.
     fn uses(&mut self) {
-        self.names.insert(self.call.name.root.to_lowercase());
+        self.names.insert(self.call.name.root.to_ascii_lowercase());
         for argument in &self.call.arguments {
             if let Some(Expression::Reference(reference)) = &argument.value {
-                self.names.insert(reference.root.to_lowercase());
+                self.names.insert(reference.root.to_ascii_lowercase());
             }
             let known = |name: &str| {
                 PARAMETERS
@@ -208,7 +208,7 @@ impl Block<'_, '_, '_> {
         let mut needed = |member: &str, high: i64| {
             let label = format!("AppCfg.{member}");
             let before = read.remarks.len();
-            let value = read.integer(&format!("{key}.{}", member.to_lowercase()), &label, 0, high);
+            let value = read.integer(&format!("{key}.{}", member.to_ascii_lowercase()), &label, 0, high);
             if value.is_none() && read.remarks.len() == before {
                 read.say(Severity::Error, RemarkKind::Missing(label));
             }
@@ -251,7 +251,7 @@ impl Block<'_, '_, '_> {
         }
         let mut number = |member: &str, high: i64| {
             let value = read.integer(
-                &format!("{key}.{}", member.to_lowercase()),
+                &format!("{key}.{}", member.to_ascii_lowercase()),
                 &format!("TargetCfg.{member}"),
                 0,
                 high,

@@ -232,12 +232,12 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
             .into_iter()
             .find_map(|(position, names)| variable(self.value(position, names)))
             .map_or("", |reference| reference.root);
-        let lower = root.to_lowercase();
+        let lower = root.to_ascii_lowercase();
         let is_whole = SEND.iter().chain(&MANAGEMENT).any(|pin| pin.eq_ignore_ascii_case(root));
         if is_whole {
             return root.to_string();
         }
-        let ending = ENDINGS.iter().find(|ending| lower.ends_with(&ending.to_lowercase()));
+        let ending = ENDINGS.iter().find(|ending| lower.ends_with(&ending.to_ascii_lowercase()));
         let name = root.get(..root.len() - ending.map_or(0, |ending| ending.len())).unwrap_or(root);
         let name = if name.is_empty() { root } else { name };
         name.trim_start_matches('%').replace(':', "_")

@@ -34,7 +34,7 @@ impl Located {
             let Statement::Declaration(declaration) = &item.statement else { continue };
             let place = declaration.at.and_then(memory_words);
             let Some(((first, _), (name, _))) = place.zip(declaration.names.first()) else { continue };
-            let name = name.to_lowercase();
+            let name = name.to_ascii_lowercase();
             let count = usize::try_from(declaration.kind.elements()).unwrap_or(0);
             let low = declaration.kind.bounds.first().map(|(low, _)| *low);
             located.by_name.insert(name.clone(), first);
@@ -71,7 +71,7 @@ impl Located {
             Some((first, _)) => Some(self.by_word.range(..=first).next_back()?.1)
                 .filter(|area| first - area.first < area.count)
                 .map(|area| area.name.clone()),
-            None => self.by_name.get(&root.to_lowercase()).map(|first| format!("%mw{first}").to_string()),
+            None => self.by_name.get(&root.to_ascii_lowercase()).map(|first| format!("%mw{first}").to_string()),
         }
     }
 }

@@ -162,7 +162,7 @@ fn alone(
 
 /// How a variable is known among those that are used.
 pub(super) fn key_of(root: &str) -> String {
-    root.split(':').next().unwrap_or_default().to_lowercase()
+    root.split(':').next().unwrap_or_default().to_ascii_lowercase()
 }
 
 /// Assignments and calls that no message needs.

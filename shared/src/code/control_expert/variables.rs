@@ -74,7 +74,7 @@ impl<'s, 'a> Variables<'_, 's, 'a> {
     }
 
     fn array(&self, reference: &Reference<'_>) -> Table {
-        let key = reference.root.to_lowercase();
+        let key = reference.root.to_ascii_lowercase();
         let bounds = self.declaration(reference.root).and_then(|it| it.kind.bounds.first().copied());
         let from = match reference.steps.as_slice() {
             [Step::Index(indexes)] => indexes.first().and_then(Expression::integer),
@@ -120,7 +120,7 @@ impl<'s, 'a> Variables<'_, 's, 'a> {
         let bounds = self.declaration(table.root).and_then(|it| it.kind.bounds.first().copied());
         let low = bounds.map_or(0, |(low, _)| low);
         let index = low.saturating_add(i128::try_from(index).unwrap_or(0));
-        self.word(&format!("{}[{index}]", table.root.to_lowercase()))
+        self.word(&format!("{}[{index}]", table.root.to_ascii_lowercase()))
     }
 
     /// The text of an address: `ADDR('…')`, written in the call or assigned before.

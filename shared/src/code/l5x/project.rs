@@ -36,7 +36,7 @@ impl<'a, 'i> Project<'a, 'i> {
     pub(super) fn new(document: &'a Document<'i>, text: &'a str) -> Self {
         let (mut tags, mut modules) = (BTreeMap::new(), BTreeMap::new());
         for node in document.descendants() {
-            let Some(name) = node.attribute("Name").map(str::to_lowercase) else { continue };
+            let Some(name) = node.attribute("Name").map(str::to_ascii_lowercase) else { continue };
             if node.has_tag_name("Tag") {
                 tags.entry((scope(node), name)).or_insert(node);
             } else if node.has_tag_name("Module") {
@@ -52,14 +52,14 @@ impl<'a, 'i> Project<'a, 'i> {
 
     /// A tag by its name: of the same program, otherwise of the controller. Logix ignores case.
     pub(super) fn tag(&self, scope: &Scope, name: &str) -> Option<Node<'a, 'i>> {
-        let name = name.to_lowercase();
+        let name = name.to_ascii_lowercase();
         let near = self.tags.get(&(scope.clone(), name.clone()));
         near.or_else(|| self.tags.get(&(Scope::Controller, name))).copied()
     }
 
     /// The logic in which the name of a tag is that tag.
     pub(super) fn rungs_about(&self, tag: Node<'a, 'i>) -> impl Iterator<Item = &Rung> {
-        let name = tag.attribute("Name").map(str::to_lowercase).unwrap_or_default();
+        let name = tag.attribute("Name").map(str::to_ascii_lowercase).unwrap_or_default();
         let home = scope(tag);
         self.rungs.iter().filter(move |rung| {
             rung.scope == home
@@ -71,7 +71,7 @@ impl<'a, 'i> Project<'a, 'i> {
 
     /// A module of the project.
     pub(super) fn module(&self, name: &str) -> Option<Node<'a, 'i>> {
-        self.modules.get(&name.to_lowercase()).copied()
+        self.modules.get(&name.to_ascii_lowercase()).copied()
     }
 
     /// An error at a node.
@@ -89,7 +89,7 @@ impl<'a, 'i> Project<'a, 'i> {
 
 /// Where the names at a node are known.
 pub(super) fn scope(node: Node<'_, '_>) -> Scope {
-    let named = |node: Node<'_, '_>| node.attribute("Name").unwrap_or_default().to_owned().to_lowercase();
+    let named = |node: Node<'_, '_>| node.attribute("Name").unwrap_or_default().to_owned().to_ascii_lowercase();
     node.ancestors()
         .find_map(|node| match node.tag_name().name() {
             "Program" => Some(Scope::Program(named(node))),

@@ -70,7 +70,7 @@ fn types(script: &Script<'_>) -> BTreeMap<String, String> {
     for item in &script.items {
         if let Statement::Declaration(declaration) = &item.statement {
             for (name, _) in &declaration.names {
-                types.insert(name.to_lowercase(), declaration.kind.name.to_lowercase());
+                types.insert(name.to_ascii_lowercase(), declaration.kind.name.to_ascii_lowercase());
             }
         }
     }
@@ -90,7 +90,7 @@ fn vendor(statement: &Statement<'_>, types: &BTreeMap<String, String>) -> Option
             .any(|it| it.name.is_some_and(|name| words.iter().any(|word| name.eq_ignore_ascii_case(word))))
     };
     let kind =
-        types.get(&call.name.root.to_lowercase()).cloned().unwrap_or_else(|| call.name.root.to_lowercase());
+        types.get(&call.name.root.to_ascii_lowercase()).cloned().unwrap_or_else(|| call.name.root.to_ascii_lowercase());
     match kind.as_str() {
         "send_req" => Some(Dialect::SendReqEtc100),
         "data_exch" => Some(Dialect::DataExch),

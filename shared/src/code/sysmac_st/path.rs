@@ -27,7 +27,7 @@ impl Block<'_, '_, '_> {
         reading.unknown(&key, &known);
         let kind = self.types.get(&key).map(|kind| kind.name.to_ascii_lowercase());
         let formats =
-            SEGMENTS.iter().any(|(_, format)| reading.has(&format!("{key}.{}", format.to_lowercase())));
+            SEGMENTS.iter().any(|(_, format)| reading.has(&format!("{key}.{}", format.to_ascii_lowercase())));
         let extended = kind.map_or(formats, |kind| kind == "_srequest_path_ex");
         let has_attribute =
             reading.truth(&format!("{key}.isattributeid"), "isAttributeID").unwrap_or_default();
@@ -43,7 +43,7 @@ impl Block<'_, '_, '_> {
             if kind == LogicalKind::Attribute && !has_attribute {
                 continue;
             }
-            let value_key = format!("{key}.{}", name.to_lowercase());
+            let value_key = format!("{key}.{}", name.to_ascii_lowercase());
             if !reading.has(&value_key) {
                 reading.say(Severity::Error, RemarkKind::Missing(format!("RqPath.{name}")));
             }
@@ -51,7 +51,7 @@ impl Block<'_, '_, '_> {
             let value = reading.integer(&value_key, &format!("RqPath.{name}"), 0, high).unwrap_or_default();
             *slot = value;
             let value = u32::try_from(value).unwrap_or(0);
-            let told = reading.word(&format!("{key}.{}", format.to_lowercase()));
+            let told = reading.word(&format!("{key}.{}", format.to_ascii_lowercase()));
             let width = match told {
                 Some(told) => told.rsplit('#').next().unwrap_or_default().to_ascii_uppercase(),
                 None if extended => {

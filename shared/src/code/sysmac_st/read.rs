@@ -60,7 +60,7 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
     let mut types = BTreeMap::new();
     for item in &script.items {
         if let Statement::Declaration(declaration) = &item.statement {
-            types.extend(declaration.names.iter().map(|(name, _)| (name.to_lowercase(), &declaration.kind)));
+            types.extend(declaration.names.iter().map(|(name, _)| (name.to_ascii_lowercase(), &declaration.kind)));
         }
     }
     types
@@ -69,7 +69,7 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
 fn sites<'s, 'a>(script: &'s Script<'a>, types: &Types<'_, '_>) -> Vec<Site<'s, 'a>> {
     let site = |(item, it): (usize, &'s Item<'a>)| {
         let Statement::Call(call) = &it.statement else { return None };
-        let declared = types.get(&call.name.root.to_lowercase());
+        let declared = types.get(&call.name.root.to_ascii_lowercase());
         let instruction = match declared {
             Some(kind) => Instruction::of_type(kind.name)?,
             None => Instruction::of_name(call.name.root).or_else(|| Instruction::of_inputs(call))?,
@@ -82,8 +82,8 @@ fn sites<'s, 'a>(script: &'s Script<'a>, types: &Types<'_, '_>) -> Vec<Site<'s, 
 /// The variables of a call, and its instance.
 fn variables(call: &Call<'_>) -> Vec<String> {
     let of = call.arguments.iter().filter_map(|argument| match &argument.value {
-        Some(Expression::Reference(reference)) => Some(reference.root.to_lowercase()),
+        Some(Expression::Reference(reference)) => Some(reference.root.to_ascii_lowercase()),
         _ => None,
     });
-    core::iter::once(call.name.root.to_lowercase()).chain(of).collect()
+    core::iter::once(call.name.root.to_ascii_lowercase()).chain(of).collect()
 }

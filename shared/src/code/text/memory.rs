@@ -143,10 +143,10 @@ impl<'s, 'a> Cells<'s, 'a> {
         let low = declaration.kind.bounds.first().map_or(0, |(low, _)| *low);
         let cell = Cell { value, item, assigned: false, again: false };
         for (name, _) in &declaration.names {
-            self.spread(&name.to_lowercase(), cell, low);
+            self.spread(&name.to_ascii_lowercase(), cell, low);
         }
         if let Some(address) = declaration.at {
-            self.spread(&address.to_lowercase(), cell, low);
+            self.spread(&address.to_ascii_lowercase(), cell, low);
         }
     }
 
@@ -164,7 +164,7 @@ impl<'s, 'a> Cells<'s, 'a> {
             }
             Expression::Structure(members, _) => {
                 for (name, value) in members {
-                    self.spread(&format!("{key}.{}", name.to_lowercase()), Cell { value, ..cell }, 0);
+                    self.spread(&format!("{key}.{}", name.to_ascii_lowercase()), Cell { value, ..cell }, 0);
                 }
             }
             _ if self.cells.len() < MAX_CELLS && key.len() <= MAX_KEY => {

@@ -137,7 +137,7 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
         match call.argument(position, name).and_then(|argument| argument.value.as_ref()) {
             Some(Expression::Reference(reference)) => reference.key(),
             Some(_) => None,
-            None => Some(alloc::format!("{}.{}", call.name.key()?, name.to_lowercase())),
+            None => Some(alloc::format!("{}.{}", call.name.key()?, name.to_ascii_lowercase())),
         }
     }
 

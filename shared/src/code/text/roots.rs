@@ -44,7 +44,7 @@ pub(in crate::code) fn roots(item: &Item<'_>) -> Vec<String> {
     let mut names = Vec::new();
     match &item.statement {
         Statement::Declaration(declaration) => {
-            names.extend(declaration.names.iter().map(|(name, _)| name.to_lowercase()));
+            names.extend(declaration.names.iter().map(|(name, _)| name.to_ascii_lowercase()));
         }
         Statement::Assignment { target, value } => {
             of_reference(target, &mut names);
@@ -59,7 +59,7 @@ pub(in crate::code) fn roots(item: &Item<'_>) -> Vec<String> {
 }
 
 fn of_reference(reference: &Reference<'_>, names: &mut Vec<String>) {
-    names.push(reference.root.to_lowercase());
+    names.push(reference.root.to_ascii_lowercase());
     for step in &reference.steps {
         if let Step::Index(indexes) = step {
             of_expressions(indexes, names);

@@ -128,12 +128,12 @@ pub(in crate::code) enum Step<'a> {
 impl Reference<'_> {
     /// `a.b[2]` in lower case; `None` if an index is not constant.
     pub(in crate::code) fn key(&self) -> Option<String> {
-        let mut key = self.root.to_lowercase();
+        let mut key = self.root.to_ascii_lowercase();
         for step in &self.steps {
             match step {
                 Step::Member(name) => {
                     key.push('.');
-                    key.push_str(&name.to_lowercase());
+                    key.push_str(&name.to_ascii_lowercase());
                 }
                 Step::Bit(bit) => {
                     let _ = write!(key, ".{bit}");
