@@ -96,10 +96,13 @@ impl Remark {
 
 /// One line of it, not too long.
 fn cut(excerpt: &str) -> String {
-    let line = excerpt.trim().lines().next().unwrap_or_default().trim_end();
-    let mut cut: String = line.chars().take(MAX_EXCERPT).collect();
-    if cut.len() < line.len() {
+    // Only its beginning is looked at: many remarks may be about one long line.
+    let mut line = excerpt.trim_start().chars().take_while(|c| !matches!(c, '\n' | '\r'));
+    let mut cut: String = line.by_ref().take(MAX_EXCERPT).collect();
+    if line.next().is_some() {
         cut.push('…');
+    } else {
+        cut.truncate(cut.trim_end().len());
     }
     cut
 }

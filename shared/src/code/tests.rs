@@ -152,6 +152,15 @@ fn a_mebibyte_of_brackets_is_refused_in_time() {
 }
 
 #[test]
+fn the_size_of_a_table_of_memory_words_costs_nothing() {
+    for size in ["99999999999", "18446744073709551615"] {
+        let text = format!("SEND_REQ(ADDR('0.2.0.10.0.0.1'), 14, %MW0:{size}, %MW9:{size}, %MW20:{size});");
+        let imported = import(&text, Some(Dialect::SendReqEtc100));
+        assert_eq!(imported.blocks.len(), 1, "{:?}", imported.remarks);
+    }
+}
+
+#[test]
 fn a_short_text_that_says_much_is_not_calculated_for_ever() {
     let sum = format!("u : CIPUCMMSend;\nx := 1{};\n", "+1".repeat(4900));
     let bytes: Vec<String> = (0..490).map(|at| format!("d[{at}] := x;")).collect();

@@ -9,7 +9,7 @@ use super::super::Found;
 use super::super::remark::{Remark, RemarkKind};
 use super::super::text::{Call, Expression, Item, Place};
 use super::read::{key_of, variable};
-use super::variables::{Variables, Word, memory_words};
+use super::variables::{MAX_WORDS, Variables, Word, memory_words};
 use super::{address, form, table};
 use crate::config::{PlcAddress, SendReq, SendReqForm, write_words};
 use crate::plan::Severity;
@@ -247,7 +247,7 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
         self.used.insert(key_of(root));
         if let Some(alias) = self.variables.located.alias(root) {
             let words = self.variables.declaration(&alias).or_else(|| self.variables.declaration(root));
-            let count = words.map_or(1, |it| usize::try_from(it.kind.elements()).unwrap_or(0).min(1_024));
+            let count = words.map_or(1, |it| usize::try_from(it.kind.elements()).unwrap_or(0).min(MAX_WORDS));
             for name in [&alias, root] {
                 if let Some((first, _)) = memory_words(name) {
                     self.used.extend((0..count).map(|index| format!("%mw{}", first.saturating_add(index))));
@@ -256,16 +256,11 @@ impl<'r, 'a> Reading<'r, '_, '_, 'a> {
             self.used.insert(alias);
         }
         if let Some((first, count)) = memory_words(root) {
-            self.used
-                .extend((0..count.unwrap_or(4)).map(|index| format!("%mw{}", first.saturating_add(index))));
+            let count = count.unwrap_or(4).min(MAX_WORDS);
+            self.used.extend((0..count).map(|index| format!("%mw{}", first.saturating_add(index))));
         }
-        for item in &self.variables.script.items {
-            if let super::super::text::Statement::Assignment { target, .. } = &item.statement
-                && key_of(target.root) == key_of(root)
-                && item.place.line < self.item.place.line
-            {
-                self.first = self.first.min(item.place.line);
-            }
+        if let Some(line) = self.variables.names.assigned(root) {
+            self.first = self.first.min(line);
         }
     }
 

@@ -11,7 +11,7 @@ use super::super::text::{Call, Expression, Item, Lexeme, Memory, Reference, Scri
 use super::super::{Found, Imported};
 use super::call::read_call;
 use super::located::Located;
-use super::variables::{Variables, declarations, memory_words};
+use super::variables::{Names, Variables, memory_words};
 use super::{exchange, form, il, table};
 use crate::config::SendReqForm;
 use crate::plan::Severity;
@@ -52,14 +52,13 @@ fn sections(text: &str, dialect: Dialect) -> Imported {
     imported.remarks.extend(script.remarks.iter().cloned());
     let mut used = BTreeSet::new();
     let located = Located::of(&script);
-    let declared = declarations(&script);
+    let names = Names::of(&script);
     let mut memory = Memory::new(&script);
     for (index, item) in script.items.iter().enumerate() {
         if let Statement::Call(call) = &item.statement
             && is_exchange(call)
         {
-            let variables =
-                Variables { script: &script, memory: &memory, located: &located, declared: &declared };
+            let variables = Variables { script: &script, memory: &memory, located: &located, names: &names };
             let found = read_call(&variables, call, item, &mut used);
             imported.blocks.push(found);
             if imported.is_full() {
@@ -72,7 +71,7 @@ fn sections(text: &str, dialect: Dialect) -> Imported {
         let words = "there are too many values in this text: some were left out";
         imported.remarks.push(Remark::error(1, 1, "", RemarkKind::told(&words)));
     }
-    let variables = Variables { script: &script, memory: &memory, located: &located, declared: &declared };
+    let variables = Variables { script: &script, memory: &memory, located: &located, names: &names };
     alone(&variables, &mut used, &mut imported, dialect.kind().form());
     unused(&script, &used, &mut imported);
     slips(&st, &script, &mut imported);

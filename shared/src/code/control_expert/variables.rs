@@ -7,9 +7,10 @@ use alloc::vec::Vec;
 
 use super::super::text::{Declaration, Expression, Memory, Reference, Script, Statement, Step};
 use super::located::Located;
+use super::read::key_of;
 
 /// Words of a table that is looked for by its elements; no exchange has more.
-const MAX_WORDS: usize = 1_024;
+pub(super) const MAX_WORDS: usize = 1_024;
 
 /// What is known of a table of words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,30 +35,48 @@ pub(super) struct Variables<'v, 's, 'a> {
     pub(super) script: &'s Script<'a>,
     pub(super) memory: &'v Memory<'s, 'a>,
     pub(super) located: &'v Located,
-    pub(super) declared: &'v Declarations<'s, 'a>,
+    pub(super) names: &'v Names<'s, 'a>,
 }
 
-/// The first declaration of each name and of each place, in lower case.
-pub(super) type Declarations<'s, 'a> = BTreeMap<String, &'s Declaration<'a>>;
+/// Where the variables of a section are declared and assigned, by their names and places in lower case.
+#[derive(Debug, Default)]
+pub(super) struct Names<'s, 'a> {
+    /// The first declaration of each.
+    declared: BTreeMap<String, &'s Declaration<'a>>,
+    /// The line of the first assignment of each.
+    assigned: BTreeMap<String, usize>,
+}
 
-/// All declarations of a section.
-pub(super) fn declarations<'s, 'a>(script: &'s Script<'a>) -> Declarations<'s, 'a> {
-    let mut declared = BTreeMap::new();
-    for item in &script.items {
-        if let Statement::Declaration(declaration) = &item.statement {
-            let names = declaration.names.iter().map(|(name, _)| *name).chain(declaration.at);
-            for name in names {
-                declared.entry(name.to_ascii_lowercase()).or_insert(declaration);
+impl<'s, 'a> Names<'s, 'a> {
+    pub(super) fn of(script: &'s Script<'a>) -> Self {
+        let mut all = Self::default();
+        for item in &script.items {
+            match &item.statement {
+                Statement::Declaration(declaration) => {
+                    let names = declaration.names.iter().map(|(name, _)| *name).chain(declaration.at);
+                    for name in names {
+                        all.declared.entry(name.to_ascii_lowercase()).or_insert(declaration);
+                    }
+                }
+                Statement::Assignment { target, .. } => {
+                    all.assigned.entry(key_of(target.root)).or_insert(item.place.line);
+                }
+                Statement::Call(_) => {}
             }
         }
+        all
     }
-    declared
+
+    /// The first line that assigns to a variable.
+    pub(super) fn assigned(&self, root: &str) -> Option<usize> {
+        self.assigned.get(&key_of(root)).copied()
+    }
 }
 
 impl<'s, 'a> Variables<'_, 's, 'a> {
     /// The declaration of a variable, or of what lies at a place.
     pub(super) fn declaration(&self, name: &str) -> Option<&'s Declaration<'a>> {
-        self.declared.get(&name.to_ascii_lowercase()).copied()
+        self.names.declared.get(&name.to_ascii_lowercase()).copied()
     }
 
     /// A table: an array, `%MW100:5`, or an array from an element on.

@@ -1,5 +1,6 @@
 //! The values of one message's variables, with a remark for each that is not as it should be.
 
+use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -193,13 +194,15 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
         low: Option<i128>,
         length: Option<usize>,
     ) -> Vec<u8> {
-        let memory = self.memory;
-        let below = memory.below(key);
         let index = |rest: &str| rest.strip_prefix('[')?.strip_suffix(']')?.parse::<i128>().ok();
+        // Only where it is asked: an array may be long, and used by many messages.
+        let is_known = low.is_some() && length.is_some();
+        let below = if is_known { BTreeMap::new() } else { self.memory.below(key) };
         let set: Vec<i128> = below.keys().filter_map(|rest| index(rest)).collect();
         let low = low.unwrap_or_else(|| set.iter().copied().min().unwrap_or(0).clamp(0, 1));
         let last = set.iter().copied().max();
-        let all = last.map_or(0, |last| usize::try_from(last - low + 1).unwrap_or(0));
+        let all =
+            last.map_or(0, |last| usize::try_from(last.saturating_sub(low)).unwrap_or(0).saturating_add(1));
         let values = self.elements(key, member, low, length.unwrap_or(all), (0, 255));
         values.into_iter().map(|value| u8::try_from(value & 0xFF).unwrap_or(0)).collect()
     }
