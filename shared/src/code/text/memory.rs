@@ -14,6 +14,9 @@ const MAX_CELLS: usize = 100_000;
 /// short text would be calculated for hours.
 const MAX_WORK: u32 = 10_000_000;
 
+/// Elements of a variable that are listed: more than [`super::Reading`] takes of any.
+const MAX_BELOW: usize = 5_000;
+
 /// Bytes of a key; names in programs are far shorter.
 const MAX_KEY: usize = 256;
 
@@ -122,7 +125,8 @@ impl<'s, 'a> Memory<'s, 'a> {
         self.value(key)?.integer_in(self)
     }
 
-    /// All elements and members of a variable, in the order of their keys: what follows its key, and the value.
+    /// The elements and members of a variable, in the order of their keys: what follows its key, and the value. Of one
+    /// that has more than any message, so many that this is seen.
     pub(in crate::code) fn below(&self, key: &str) -> BTreeMap<&str, &Cell<'s, 'a>> {
         let mut below = BTreeMap::new();
         for cells in [&self.first, &self.now] {
@@ -130,7 +134,9 @@ impl<'s, 'a> Memory<'s, 'a> {
                 let start = format!("{key}{open}");
                 let range =
                     cells.cells.range(start.clone()..).take_while(|(path, _)| path.starts_with(&start));
-                below.extend(range.filter_map(|(path, cell)| Some((path.get(key.len()..)?, cell))));
+                below.extend(
+                    range.take(MAX_BELOW).filter_map(|(path, cell)| Some((path.get(key.len()..)?, cell))),
+                );
             }
         }
         below

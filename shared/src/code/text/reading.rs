@@ -1,6 +1,6 @@
 //! The values of one message's variables, with a remark for each that is not as it should be.
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -177,9 +177,10 @@ impl<'r, 's, 'a> Reading<'r, 's, 'a> {
     /// Members that are set and that nobody knows.
     pub(in crate::code) fn unknown(&mut self, key: &str, known: &[&str]) {
         let memory = self.memory;
+        let mut told = BTreeSet::new();
         for (rest, cell) in memory.below(key) {
             let name = rest.trim_start_matches('.').split(['.', '[']).next().unwrap_or_default();
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            if told.insert(name) && !known.iter().any(|known| known.eq_ignore_ascii_case(name)) {
                 self.at(Severity::Error, cell, RemarkKind::UnknownMember(name.into()));
             }
         }
