@@ -71,7 +71,9 @@ impl Located {
             Some((first, _)) => Some(self.by_word.range(..=first).next_back()?.1)
                 .filter(|area| first - area.first < area.count)
                 .map(|area| area.name.clone()),
-            None => self.by_name.get(&root.to_ascii_lowercase()).map(|first| format!("%mw{first}").to_string()),
+            None => {
+                self.by_name.get(&root.to_ascii_lowercase()).map(|first| format!("%mw{first}").to_string())
+            }
         }
     }
 }

@@ -89,7 +89,8 @@ impl<'a, 'i> Project<'a, 'i> {
 
 /// Where the names at a node are known.
 pub(super) fn scope(node: Node<'_, '_>) -> Scope {
-    let named = |node: Node<'_, '_>| node.attribute("Name").unwrap_or_default().to_owned().to_ascii_lowercase();
+    let named =
+        |node: Node<'_, '_>| node.attribute("Name").unwrap_or_default().to_owned().to_ascii_lowercase();
     node.ancestors()
         .find_map(|node| match node.tag_name().name() {
             "Program" => Some(Scope::Program(named(node))),

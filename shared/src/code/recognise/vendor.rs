@@ -89,8 +89,10 @@ fn vendor(statement: &Statement<'_>, types: &BTreeMap<String, String>) -> Option
             .iter()
             .any(|it| it.name.is_some_and(|name| words.iter().any(|word| name.eq_ignore_ascii_case(word))))
     };
-    let kind =
-        types.get(&call.name.root.to_ascii_lowercase()).cloned().unwrap_or_else(|| call.name.root.to_ascii_lowercase());
+    let kind = types
+        .get(&call.name.root.to_ascii_lowercase())
+        .cloned()
+        .unwrap_or_else(|| call.name.root.to_ascii_lowercase());
     match kind.as_str() {
         "send_req" => Some(Dialect::SendReqEtc100),
         "data_exch" => Some(Dialect::DataExch),

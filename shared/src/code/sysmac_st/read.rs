@@ -60,7 +60,9 @@ fn types<'s, 'a>(script: &'s Script<'a>) -> Types<'s, 'a> {
     let mut types = BTreeMap::new();
     for item in &script.items {
         if let Statement::Declaration(declaration) = &item.statement {
-            types.extend(declaration.names.iter().map(|(name, _)| (name.to_ascii_lowercase(), &declaration.kind)));
+            types.extend(
+                declaration.names.iter().map(|(name, _)| (name.to_ascii_lowercase(), &declaration.kind)),
+            );
         }
     }
     types
