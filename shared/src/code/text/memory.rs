@@ -12,7 +12,7 @@ const MAX_CELLS: usize = 100_000;
 
 /// Values that all calculations of one text look at: a thousand messages whose every byte is calculated. Without a limit a
 /// short text would be calculated for hours.
-const MAX_WORK: u32 = 10_000_000;
+const MAX_WORK: u32 = 4_000_000;
 
 /// Elements of a variable that are listed: more than [`super::Reading`] takes of any.
 const MAX_BELOW: usize = 5_000;
