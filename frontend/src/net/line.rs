@@ -109,7 +109,7 @@ impl<T: Carried> Line<T> {
         self.0.writing.borrow().clone()
     }
 
-    /// Wakes when [`Self::link`] changes, and with [`Self::wake`].
+    /// Wakes when [`Self::link`] changes, and whenever what it carries does.
     pub fn watch(&self, wake: Callback<()>) -> Watch {
         self.0.watchers.watch(wake)
     }
