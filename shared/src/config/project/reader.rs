@@ -17,6 +17,9 @@ use super::{MAX_PROJECT_FILE, PROJECT_VERSION, ProjectGroup, ProjectHead, Projec
 /// Members that the relay gives to a block.
 const GIVEN: [&str; 2] = ["id", "revision"];
 
+/// Members of `cipdeck.json`.
+const HEAD: [&str; 2] = ["project", "name"];
+
 /// Members of a target.
 const TARGET: [&str; 8] =
     ["name", "site", "path", "profile", "connection", "timeout_ms", "max_requests_per_s", "types"];
@@ -145,6 +148,7 @@ pub(super) fn head<'a>(
             None => notes.error(place, Kind::NoVersion),
             Some(version) if version > PROJECT_VERSION => notes.error(place, Kind::TooNew(version)),
             Some(version) => {
+                unknown(document, &document.root, &HEAD, notes);
                 let mut value = document.value.clone();
                 if let Some(members) = value.as_object_mut() {
                     members.remove("project");

@@ -328,6 +328,19 @@ fn what_is_no_file_of_the_project_is_left_alone() {
 }
 
 #[test]
+fn an_unknown_member_of_the_head_is_kept_and_told() {
+    let mut there = folder(&[]);
+    let head = "{\n  \"project\": 1,\n  \"name\": \"plant\",\n  \"Owner\": \"x\"\n}\n";
+    there.insert(PROJECT_HEAD.into(), head.into());
+    let found = read(&there);
+    assert_eq!(
+        messages(&found.warnings),
+        ["cipdeck.json:4:3: this version does not know the member `Owner`: it is kept, and does nothing"]
+    );
+    assert_eq!(files(&found.project), there);
+}
+
+#[test]
 fn names_that_are_there_twice_are_told() {
     let found = read(&folder(&[("blocks/a.json", BLOCK), ("blocks/b.json", BLOCK)]));
     let expected =
