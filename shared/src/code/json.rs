@@ -35,12 +35,6 @@ pub(super) fn import(text: &str) -> Imported {
         imported.remarks.push(unreadable(text, &error));
         return imported;
     }
-    // The last of two members counts; that is not for a machine to decide.
-    for (place, what) in project::lost(text) {
-        let excerpt = text.lines().nth(place.line - 1).unwrap_or_default();
-        let what = RemarkKind::Told(what.to_string());
-        imported.remarks.push(Remark::error(place.line, place.column, excerpt, what));
-    }
     let mut lines = Lines { text, at: 0, line: 1 };
     for range in elements(text) {
         let element = text.get(range.clone()).unwrap_or_default();
@@ -71,6 +65,10 @@ pub(super) fn import(text: &str) -> Imported {
 fn read(element: &str) -> Result<BlockConfig, String> {
     if !element.starts_with('{') {
         return Err("it is no object".to_string());
+    }
+    // Which of two members counts is not for a machine to decide.
+    if let Some((place, what)) = project::lost(element).first() {
+        return Err(format!("{what}, in its line {}", place.line));
     }
     let mut members: Map<String, Value> = serde_json::from_str(element).map_err(|error| error.to_string())?;
     members.remove("id");
@@ -149,13 +147,13 @@ mod tests {
     use crate::config::MsgCipGeneric;
 
     #[test]
-    fn a_member_that_is_there_twice_is_told() {
+    fn a_block_with_a_member_that_is_there_twice_is_none() {
         let text = export(&MsgCipGeneric::product_name("4,10.0.0.1").into()).text;
-        let text = text.replace("\"Class\": 1,", "\"Class\": 147,\n    \"Class\": 1,");
-        let imported = import(&text);
+        let twice = text.replace("\"Class\": 1,", "\"Class\": 147,\n    \"Class\": 1,");
+        let imported = import(&format!("[\n{text},\n{twice}]"));
         let told: Vec<String> = imported.remarks.iter().map(ToString::to_string).collect();
         assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].contains("error: the member `Class` is there twice: \"Class\": 1,"), "{told:?}");
+        assert!(told[0].contains("not a block: the member `Class` is there twice, in its line "), "{told:?}");
         assert_eq!(imported.blocks.len(), 1);
     }
 
