@@ -67,8 +67,8 @@ fn read(element: &str) -> Result<BlockConfig, String> {
         return Err("it is no object".to_string());
     }
     // Which of two members counts is not for a machine to decide.
-    if let Some((place, what)) = project::lost(element).first() {
-        return Err(format!("{what}, in its line {}", place.line));
+    if let Some(name) = project::twice(element) {
+        return Err(format!("the member `{name}` is there twice"));
     }
     let mut members: Map<String, Value> = serde_json::from_str(element).map_err(|error| error.to_string())?;
     members.remove("id");
@@ -153,7 +153,7 @@ mod tests {
         let imported = import(&format!("[\n{text},\n{twice}]"));
         let told: Vec<String> = imported.remarks.iter().map(ToString::to_string).collect();
         assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].contains("not a block: the member `Class` is there twice, in its line "), "{told:?}");
+        assert!(told[0].contains("not a block: the member `Class` is there twice: "), "{told:?}");
         assert_eq!(imported.blocks.len(), 1);
     }
 

@@ -40,9 +40,12 @@ impl<'a> Places<'a> {
     }
 }
 
-/// What would be lost of a text that is JSON by reading it: members that are there twice, numbers that are not kept.
-pub fn lost(text: &str) -> Vec<(Position, ProjectErrorKind)> {
-    Document::parse(text).err().unwrap_or_default()
+/// The first member that is there twice in a text that is JSON: by reading it, one of them would be lost.
+pub fn twice(text: &str) -> Option<String> {
+    scan(text).1.into_iter().find_map(|(_, what)| match what {
+        ProjectErrorKind::Twice(name) => Some(name),
+        _ => None,
+    })
 }
 
 /// A text that is JSON and says everything once.

@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::document::{Places, lost};
+pub use self::document::{Places, twice};
 pub use self::error::{ProjectError, ProjectErrorKind};
 pub use self::name::{file_name, free_file_name, is_portable};
 pub use self::place::Position;
